@@ -1,0 +1,288 @@
+"""The one check of every argument, read from the annotations.
+
+A refusal is one line: the argument, what was expected, what came, what to do. It names
+shapes and never prints an array's contents.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import inspect
+import math
+import numbers
+import operator
+import types
+import typing
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, ParamSpec, TypeVar
+
+import numpy as np
+
+from refcloud.conventions import Array, MayBeNotFinite, Range, Shape
+
+P = ParamSpec("P")
+Result = TypeVar("Result")
+
+
+def complaint(name: str, expected: str, got: str, advice: str = "") -> str:
+    """Word a refusal: the argument, what was expected, what came, what to do."""
+    return f"{name}: expected {expected}, got {got}" + (f"; {advice}" if advice else "")
+
+
+def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None) -> Any:
+    """Return a value as its annotation asks for it, or refuse it in one line.
+
+    Parameters
+    ----------
+    name
+        What the refusal calls the argument.
+    value
+        What came.
+    hint
+        The annotation: a type, ``Annotated`` with `Range` or `Shape`, ``Literal``,
+        a union, a class, or a tuple of these.
+    sizes
+        Sizes of shape letters seen so far; filled in.
+
+    Returns
+    -------
+    The value: numbers as int or float, arrays as read-only float64 views.
+
+    Raises
+    ------
+    TypeError
+        The value is of another kind.
+    ValueError
+        It is out of range, not finite, or of another shape.
+
+    Examples
+    --------
+    >>> check("persistence", 1, Annotated[float, Range(0, 1)])
+    1.0
+    """
+    sizes = {} if sizes is None else sizes
+    origin = typing.get_origin(hint)
+    if origin is Annotated:
+        base, *marks = typing.get_args(hint)
+        return _check_annotated(name, value, base, marks, sizes)
+    if hint is Any or isinstance(hint, TypeVar):
+        return value
+    if origin is Literal:
+        return _check_choice(name, value, typing.get_args(hint))
+    if origin in (typing.Union, types.UnionType):
+        return _check_union(name, value, typing.get_args(hint), sizes)
+    if origin is tuple:
+        return _check_tuple(name, value, typing.get_args(hint), sizes)
+    if hint in (int, float):
+        return _check_number(name, value, hint, None)
+    if hint is Array:
+        return _check_array(name, value, None, None, sizes, finite=True)
+    kind = origin or hint
+    if kind is Callable or hint is Callable:
+        kind = Callable
+    if hint is None or hint is type(None):
+        kind = type(None)
+    if isinstance(kind, type) and not isinstance(value, kind):
+        raise TypeError(complaint(name, _kind_name(kind), _describe(value)))
+    return value
+
+
+def _check_annotated(
+    name: str, value: Any, base: Any, marks: list[Any], sizes: dict[str, int]
+) -> Any:
+    limits = next((m for m in marks if isinstance(m, Range)), None)
+    shape = next((m for m in marks if isinstance(m, Shape)), None)
+    finite = not any(m is MayBeNotFinite for m in marks)
+    if base in (int, float):
+        return _check_number(name, value, base, limits)
+    if shape is not None or base is Array:
+        return _check_array(name, value, shape, limits, sizes, finite)
+    return check(name, value, base, sizes)
+
+
+def _check_number(name: str, value: Any, base: type, limits: Range | None) -> Any:
+    whole = base is int
+    expected = "a whole number" if whole else "a finite number"
+    if limits is not None:
+        expected += f" in {limits}" + _unit(limits)
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
+        raise TypeError(complaint(name, expected, _describe(value)))
+    if whole and not isinstance(value, numbers.Integral):
+        raise TypeError(complaint(name, expected, _describe(value)))
+    try:
+        number = operator.index(value) if whole else float(value)
+    except OverflowError:
+        number = math.inf
+    if not whole and not math.isfinite(number):
+        raise ValueError(complaint(name, expected, f"{number}"))
+    if limits is not None and not limits.holds(number):
+        raise ValueError(complaint(name, expected, f"{number:g}", _advice(limits)))
+    return number
+
+
+def _check_array(
+    name: str,
+    value: Any,
+    shape: Shape | None,
+    limits: Range | None,
+    sizes: dict[str, int],
+    finite: bool,
+) -> Array:
+    expected = "an array" + (f" of shape {shape}" if shape else "")
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ValueError(complaint(name, expected, "rows of unequal length")) from None
+    if array.dtype.kind not in "iuf" and not (array.size == 0 and array.ndim == 1):
+        raise TypeError(complaint(name, expected + " of numbers", _describe(value)))
+    if shape is not None and not shape.fits(array.shape, sizes):
+        known = {k: v for k, v in sizes.items() if k in shape.axes and k != "..."}
+        where = ", ".join(f"{k} = {v}" for k, v in known.items())
+        expected += f" ({where})" if where else ""
+        raise ValueError(complaint(name, expected, f"shape {array.shape}"))
+    with np.errstate(over="ignore", invalid="ignore"):
+        array = array.astype(np.float64, copy=False).view()
+    if finite and not np.isfinite(array).all():
+        bad = int(array.size - np.isfinite(array).sum())
+        raise ValueError(
+            complaint(name, "finite numbers", f"{bad} NaN or infinite of {array.size}")
+        )
+    if limits is not None and array.size and not limits.holds(array):
+        low, high = float(array.min()), float(array.max())
+        raise ValueError(
+            complaint(
+                name,
+                f"numbers in {limits}" + _unit(limits),
+                f"{low:g} to {high:g}",
+                _advice(limits),
+            )
+        )
+    array.flags.writeable = False
+    return array
+
+
+def _check_choice(name: str, value: Any, choices: tuple[Any, ...]) -> Any:
+    if not isinstance(value, (str, int, float, bool)) or value not in choices:
+        expected = "one of " + ", ".join(repr(choice) for choice in choices)
+        raise ValueError(complaint(name, expected, _describe(value)))
+    return value
+
+
+def _check_union(
+    name: str, value: Any, members: tuple[Any, ...], sizes: dict[str, int]
+) -> Any:
+    if value is None and type(None) in members:
+        return None
+    refusals: list[Exception] = []
+    for member in members:
+        if member is type(None):
+            continue
+        try:
+            return check(name, value, member, sizes)
+        except (TypeError, ValueError) as refusal:
+            refusals.append(refusal)
+    if len(refusals) == 1:
+        raise refusals[0]
+    # A value of the right kind but out of range says more than a wrong kind.
+    kind = next((r for r in refusals if isinstance(r, ValueError)), refusals[0])
+    raise kind
+
+
+def _check_tuple(
+    name: str, value: Any, members: tuple[Any, ...], sizes: dict[str, int]
+) -> tuple[Any, ...]:
+    if not isinstance(value, (tuple, list)):
+        raise TypeError(complaint(name, "a tuple", _describe(value)))
+    if len(members) == 2 and members[1] is Ellipsis:
+        members = (members[0],) * len(value)
+    if len(members) != len(value):
+        raise ValueError(
+            complaint(name, f"{len(members)} values", f"{len(value)} values")
+        )
+    return tuple(
+        check(f"{name}[{i}]", item, member, sizes)
+        for i, (item, member) in enumerate(zip(value, members, strict=True))
+    )
+
+
+def _unit(limits: Range) -> str:
+    return "" if limits.unit == "1" else f" ({limits.unit})"
+
+
+def _advice(limits: Range) -> str:
+    return f"choose within {limits}"
+
+
+def _kind_name(kind: Any) -> str:
+    name = getattr(kind, "__name__", str(kind))
+    return {"str": "a text", "bool": "True or False", "Callable": "a function"}.get(
+        name, f"a {name}"
+    )
+
+
+def _describe(value: Any) -> str:
+    """Say what came: a kind and a shape, never an array's contents."""
+    if isinstance(value, np.ndarray):
+        return f"an array of {value.dtype} with shape {value.shape}"
+    if isinstance(value, (str, int, float, bool)) or value is None:
+        text = repr(value)
+        return text if len(text) <= 60 else text[:57] + "..."
+    return f"a {type(value).__name__}"
+
+
+def checked(function: Callable[P, Result]) -> Callable[P, Result]:
+    """Let a function refuse arguments that do not fit their annotations.
+
+    Parameters
+    ----------
+    function
+        A function whose parameters are annotated; it receives the converted values.
+
+    Returns
+    -------
+    The function with the check in front, under the same name and signature.
+    """
+    signature = inspect.signature(function)
+    hints: dict[str, Any] = {}
+
+    @functools.wraps(function)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> Result:
+        if not hints:
+            hints.update(typing.get_type_hints(function, include_extras=True))
+        try:
+            bound = signature.bind(*args, **kwargs)
+        except TypeError as error:
+            raise TypeError(f"{function.__name__}: {error}") from None
+        sizes: dict[str, int] = {}
+        for name, value in bound.arguments.items():
+            kind = signature.parameters[name].kind
+            if name in hints and kind is not inspect.Parameter.VAR_KEYWORD:
+                bound.arguments[name] = check(name, value, hints[name], sizes)
+        return function(*bound.args, **bound.kwargs)
+
+    return wrapper
+
+
+def check_fields(instance: Any) -> None:
+    """Check and convert the fields of a frozen dataclass, in ``__post_init__``.
+
+    Parameters
+    ----------
+    instance
+        A frozen dataclass whose fields are annotated.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As `check`.
+    """
+    hints = typing.get_type_hints(type(instance), include_extras=True)
+    sizes: dict[str, int] = {}
+    for field in dataclasses.fields(instance):
+        value = check(
+            field.name, getattr(instance, field.name), hints[field.name], sizes
+        )
+        object.__setattr__(instance, field.name, value)
