@@ -112,8 +112,9 @@ def _check_number(name: str, value: Any, base: type, limits: Range | None) -> An
         raise TypeError(complaint(name, expected, _describe(value)))
     if whole and not isinstance(value, numbers.Integral):
         raise TypeError(complaint(name, expected, _describe(value)))
+    real: Any = value
     try:
-        number = operator.index(value) if whole else float(value)
+        number = operator.index(real) if whole else float(real)
     except OverflowError:
         number = math.inf
     if not whole and not math.isfinite(number):

@@ -1,0 +1,100 @@
+"""The cloud map: densities on a grid of cells that fills a box."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from refcloud.checking import check_fields, checked
+from refcloud.conventions import Array, Range, Shape, Skipped, Vector
+
+MOST_VOXELS = 1 << 28  # 2 GiB of float64: larger grids are refused before allocation
+
+
+@dataclass(frozen=True)
+class VoxelGrid:
+    """A cloud as densities on a grid; the value sits at its cell's centre.
+
+    Attributes
+    ----------
+    density
+        Shape (D, H, W) as ``[z, y, x]``, at least 0.
+    lower, upper
+        Corners of the box that the grid fills, shape (3,) in x, y, z, scene units.
+        Outside it the density is 0.
+    skipped
+        What the generator left out.
+    """
+
+    density: Annotated[Array, Shape("D", "H", "W"), Range(0.0)]
+    lower: Vector
+    upper: Vector
+    skipped: tuple[Skipped, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if min(self.density.shape) < 1:
+            raise ValueError(
+                "density: expected at least one cell along each axis,"
+                f" got shape {self.density.shape}"
+            )
+        if not np.all(self.upper > self.lower):
+            raise ValueError(
+                "upper: expected above lower on every axis,"
+                f" got {tuple(self.lower)} to {tuple(self.upper)}"
+            )
+        if not np.all(np.isfinite(self.upper - self.lower)):
+            raise ValueError("upper: expected a box of finite size, got one too large")
+
+
+@checked
+def cell_size(grid: VoxelGrid) -> Array:
+    """Give the edges of one cell.
+
+    Formula: (upper - lower) / (W, H, D)
+
+    Parameters
+    ----------
+    grid
+        The cloud map.
+
+    Returns
+    -------
+    Shape (3,), in x, y, z, scene units.
+
+    Examples
+    --------
+    >>> cell_size(VoxelGrid(np.ones((1, 2, 4)), [0, 0, 0], [4, 4, 4]))
+    array([1., 2., 4.])
+    """
+    return (grid.upper - grid.lower) / np.array(grid.density.shape[::-1])
+
+
+@checked
+def cell_centres(grid: VoxelGrid) -> tuple[Array, Array, Array]:
+    """Give the coordinates of the cells' centres along each axis.
+
+    Formula: lower + (i + 1/2) (upper - lower) / n
+
+    Parameters
+    ----------
+    grid
+        The cloud map.
+
+    Returns
+    -------
+    x of shape (W,), y of shape (H,), z of shape (D,), scene units.
+
+    Examples
+    --------
+    >>> cell_centres(VoxelGrid(np.ones((1, 1, 2)), [0, 0, 0], [4, 1, 1]))[0]
+    array([1., 3.])
+    """
+    size = cell_size(grid)
+    x, y, z = (
+        low + (np.arange(n) + 0.5) * edge
+        for low, edge, n in zip(grid.lower, size, grid.density.shape[::-1], strict=True)
+    )
+    return x, y, z
