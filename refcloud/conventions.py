@@ -99,6 +99,8 @@ class MayBeNotFinite:
     """Marks scattered noise points: NaN and infinity go in and come out as NaN."""
 
 
+WHOLE_SPHERE = 4.0 * math.pi  # steradians
+
 Positive = Range(0.0, open_lower=True)
 Seed = Annotated[int, Range(-(2**63), 2**63 - 1)]
 Vector = Annotated[Array, Shape(3)]

@@ -1,0 +1,259 @@
+"""Pinhole and orthographic cameras: projection, depth keys and rays.
+
+A camera looks along -z of its own frame. Pixel (column i, row j) has its centre at
+(i + 1/2, j + 1/2); row 0 is the top. Depth is measured along the view axis.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Annotated
+
+import numpy as np
+
+from refcloud.checking import check_fields, checked
+from refcloud.conventions import Array, Positive, Range, Shape, Vector, unit_vector
+
+__all__ = ["Camera", "OrthographicCamera", "axes", "frame", "project", "rays"]
+
+MOST_PIXELS = 64_000_000
+Side = Annotated[int, Range(1, MOST_PIXELS, "pixels")]
+Angle = Annotated[
+    float, Range(0.0, math.pi, "radians", open_lower=True, open_upper=True)
+]
+WORLD_UP = (0.0, 1.0, 0.0)
+FOV_Y = 0.533  # 40 degrees across a 4:3 picture
+PARALLEL = 1e-12  # squared sine below which `up` gives no direction
+
+
+def _check_view(camera: Camera | OrthographicCamera) -> None:
+    check_fields(camera)
+    if camera.width * camera.height > MOST_PIXELS:
+        raise ValueError(
+            f"width: expected at most {MOST_PIXELS / 1e6:.0f} megapixels, got"
+            f" {camera.width} x {camera.height}; make the picture smaller"
+        )
+    gap = camera.target - camera.eye
+    if not np.isfinite(gap).all() or not gap.any():
+        raise ValueError(
+            "target: expected another place than the eye, got the same or one too far"
+        )
+    unit_vector(camera.up, "up")
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera.
+
+    Attributes
+    ----------
+    eye, target
+        Where it stands and what it looks at, shape (3,), scene units.
+    up
+        What is upward in the picture, shape (3,); along the view another axis serves.
+    fov_y
+        Vertical field of view, radians, in (0, pi).
+    width, height
+        Size of the picture, pixels; at most 64 megapixels together.
+    """
+
+    eye: Vector
+    target: Vector
+    up: Vector = field(default_factory=lambda: np.array(WORLD_UP))
+    fov_y: Angle = FOV_Y
+    width: Side = 1024
+    height: Side = 768
+
+    def __post_init__(self) -> None:
+        _check_view(self)
+
+
+@dataclass(frozen=True)
+class OrthographicCamera:
+    """A camera whose rays are parallel.
+
+    Attributes
+    ----------
+    eye, target
+        A place on the view axis and another in front of it, shape (3,), scene units.
+    up
+        What is upward in the picture, shape (3,).
+    height_of_view
+        Height of what the picture shows, scene units, above 0.
+    width, height
+        Size of the picture, pixels; at most 64 megapixels together.
+    """
+
+    eye: Vector
+    target: Vector
+    up: Vector = field(default_factory=lambda: np.array(WORLD_UP))
+    height_of_view: Annotated[float, Positive] = 2.0
+    width: Side = 1024
+    height: Side = 768
+
+    def __post_init__(self) -> None:
+        _check_view(self)
+
+
+AnyCamera = Camera | OrthographicCamera
+
+
+@checked
+def axes(camera: AnyCamera) -> Array:
+    """Give the camera's frame.
+
+    Formula: back = eye - target, right = up x back, up = back x right, all of length 1
+
+    Parameters
+    ----------
+    camera
+        Pinhole or orthographic.
+
+    Returns
+    -------
+    Shape (3, 3); the rows are right, up and back, unit vectors.
+
+    Source: the look-at frame of OpenGL.
+
+    Examples
+    --------
+    >>> axes(Camera([0, 0, 5], [0, 0, 0]))
+    array([[1., 0., 0.],
+           [0., 1., 0.],
+           [0., 0., 1.]])
+    """
+    back = unit_vector(camera.eye - camera.target)
+    right = np.cross(unit_vector(camera.up), back)
+    if right @ right < PARALLEL:
+        # Looking along `up`: the world axis that the view is farthest from serves.
+        right = np.cross(np.eye(3)[np.argmin(np.abs(back))], back)
+    right = unit_vector(right)
+    return np.array([right, np.cross(back, right), back])
+
+
+@checked
+def project(
+    camera: AnyCamera, points: Annotated[Array, Shape("N", 3)]
+) -> tuple[Array, Array, Array, Array]:
+    """Find where points show in the picture, how deep, and at what scale.
+
+    Formula: x = W/2 + s p.right, y = H/2 - s p.up, with p from the eye, and
+    s = H / (2 tan(fov_y / 2) depth), or H / height_of_view
+
+    Parameters
+    ----------
+    camera
+        Pinhole or orthographic.
+    points
+        Shape (N, 3), scene units.
+
+    Returns
+    -------
+    x, y of shape (N,), pixels; depth of shape (N,), scene units along the view;
+    scale of shape (N,), pixels per scene unit, 0 where a pinhole's point is not in
+    front of the eye (x and y are then the picture's middle).
+
+    Source: OpenGL's perspective and viewport transforms.
+
+    Examples
+    --------
+    >>> camera = Camera([0, 0, 4], [0, 0, 0], fov_y=np.pi / 2, width=8, height=8)
+    >>> [round(float(v[0]), 9) for v in project(camera, [[1.0, 0.0, 0.0]])]
+    [5.0, 4.0, 4.0, 1.0]
+    """
+    offset = (points - camera.eye) @ axes(camera).T
+    depth = -offset[:, 2]
+    if isinstance(camera, Camera):
+        focal = 0.5 * camera.height / math.tan(0.5 * camera.fov_y)
+        # A ball so near that its scale overflows is no different from one at the eye.
+        in_front = depth > focal / np.finfo(np.float64).max
+        scale = np.divide(focal, depth, out=np.zeros_like(depth), where=in_front)
+    else:
+        scale = np.full(len(depth), camera.height / camera.height_of_view)
+    x = 0.5 * camera.width + scale * offset[:, 0]
+    y = 0.5 * camera.height - scale * offset[:, 1]
+    return x, y, depth, scale
+
+
+@checked
+def rays(camera: AnyCamera) -> tuple[Array, Array]:
+    """Give the ray through every pixel's centre.
+
+    Formula: the inverse of `project`
+
+    Parameters
+    ----------
+    camera
+        Pinhole or orthographic.
+
+    Returns
+    -------
+    Origins and unit directions, each of shape (H, W, 3).
+
+    Source: OpenGL's viewport transform, inverted.
+
+    Examples
+    --------
+    >>> origins, directions = rays(Camera([0, 0, 4], [0, 0, 0], width=1, height=1))
+    >>> directions[0, 0] + 0.0
+    array([ 0.,  0., -1.])
+    """
+    right, up, back = axes(camera)
+    i = np.arange(camera.width) + 0.5 - 0.5 * camera.width
+    j = 0.5 * camera.height - (np.arange(camera.height) + 0.5)
+    if isinstance(camera, Camera):
+        pixel = 2.0 * math.tan(0.5 * camera.fov_y) / camera.height
+        directions = (
+            i[None, :, None] * pixel * right + j[:, None, None] * pixel * up - back
+        )
+        directions /= np.sqrt(np.square(directions).sum(axis=-1, keepdims=True))
+        return np.broadcast_to(camera.eye, directions.shape), directions
+    pixel = camera.height_of_view / camera.height
+    origins = (
+        camera.eye + i[None, :, None] * pixel * right + j[:, None, None] * pixel * up
+    )
+    return origins, np.broadcast_to(-back, origins.shape)
+
+
+@checked
+def frame(
+    lower: Vector,
+    upper: Vector,
+    *,
+    width: Side = 1024,
+    height: Side = 768,
+    margin: Annotated[float, Range(1.0, 100.0)] = 1.3,
+) -> Camera:
+    """Set up a camera that shows a box from the front, a little from below.
+
+    Formula: the sphere around the box, times margin, fills the narrower field of view
+
+    Parameters
+    ----------
+    lower, upper
+        Corners of the box, shape (3,), scene units.
+    width, height
+        Size of the picture, pixels.
+    margin
+        Room around the box, as a factor, at least 1.
+
+    Returns
+    -------
+    The camera.
+
+    Source: design.md, section 5 ("without a camera the bounds are framed").
+
+    Examples
+    --------
+    >>> frame([-1, -1, -1], [1, 1, 1]).target
+    array([0., 0., 0.])
+    """
+    target = 0.5 * (lower + upper)
+    half = 0.5 * np.abs(upper - lower)
+    aspect = width / height
+    # Half sizes that the view must hold, seen from the front.
+    need_y = max(half[1], half[0] / aspect, half[2] / aspect, 1e-300) * margin
+    distance = need_y / math.tan(0.5 * FOV_Y) + half[2]
+    toward = unit_vector(np.array([0.0, -0.12, 1.0]))
+    return Camera(target + distance * toward, target, width=width, height=height)
