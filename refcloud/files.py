@@ -1,0 +1,297 @@
+"""Files of named arrays: written whole or not at all, read without trust."""
+
+from __future__ import annotations
+
+import math
+import os
+import struct
+import tokenize
+import zipfile
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, BinaryIO
+
+import numpy as np
+
+from refcloud.checking import checked
+from refcloud.conventions import Range, Shape
+
+LONGEST_TEXT = 64  # characters: names of formats and kernels are shorter
+WIDEST_NUMBER = 8  # bytes: float64 and int64
+SUFFIX = ".npy"  # what numpy appends to an array's name inside the archive
+# Everything that the readers of zip archives and of array headers raise on damage.
+DAMAGE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    OSError,
+    ValueError,
+    KeyError,
+    TypeError,
+    OverflowError,
+    RuntimeError,
+    SyntaxError,
+    struct.error,
+    tokenize.TokenError,
+    UserWarning,
+)
+
+
+@checked
+def write_atomically(
+    path: str | os.PathLike[str], write: Callable[[BinaryIO], Any]
+) -> None:
+    """Write a file under a temporary name beside its own, then rename it.
+
+    Formula: the file holds all that `write` wrote, or what it held before.
+
+    Parameters
+    ----------
+    path
+        Where the file goes. Its folder must exist.
+    write
+        Function that is called with the open binary file.
+
+    Raises
+    ------
+    FileNotFoundError
+        The folder does not exist.
+    ValueError
+        The path is a folder.
+
+    Source: project, W04 and W05.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_atomically(Path(folder, "a"), lambda file: file.write(b"cloud"))
+    ...     Path(folder, "a").read_bytes()
+    b'cloud'
+    """
+    target = Path(path)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(
+            f"{target}: expected an existing folder, got {target.parent}; create it"
+        )
+    if target.is_dir():
+        raise ValueError(f"{target}: expected a file name, got a folder")
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with open(temporary, "wb") as file:
+            write(file)
+        os.replace(temporary, target)
+    except BaseException:  # an interrupt leaves nothing behind either
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+@checked
+def write_arrays(
+    path: str | os.PathLike[str],
+    format: str,
+    version: Annotated[int, Range(1)],
+    arrays: dict[str, Any],
+) -> None:
+    """Write named arrays and short texts as one ``.npz`` file.
+
+    Formula: members ``format``, ``version`` and one for each name, compressed.
+
+    Parameters
+    ----------
+    path
+        Where the file goes.
+    format
+        Name of the kind of file, for instance ``refcloud.voxels``.
+    version
+        Version of that kind, from 1.
+    arrays
+        Arrays of numbers, or texts, by name.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        As `write_atomically`.
+
+    Source: project, W04 and W05.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_arrays(Path(folder, "a"), "demo", 1, {"x": np.zeros(3)})
+    ...     read_arrays(Path(folder, "a"), "demo", 1, {"x": Shape("N")}, 9)
+    {'x': array([0., 0., 0.])}
+    """
+    members: dict[str, Any] = {
+        name: np.asarray(array) for name, array in arrays.items()
+    }
+    members |= {"format": np.array(format), "version": np.array(version)}
+    write_atomically(path, lambda file: np.savez_compressed(file, **members))
+
+
+@checked
+def read_arrays(
+    path: str | os.PathLike[str],
+    format: str,
+    version: Annotated[int, Range(1)],
+    shapes: dict[str, Shape],
+    most: Annotated[int, Range(1)],
+) -> dict[str, np.ndarray]:
+    """Read named arrays, after their headers have shown that they fit.
+
+    Formula: format, version, kinds and sizes are checked before memory is taken.
+
+    Parameters
+    ----------
+    path
+        The file.
+    format
+        Name of the kind of file that is expected.
+    version
+        Newest version that the caller understands.
+    shapes
+        Shape of each array by name; ``Shape()`` is one short text. A letter stands
+        for one size in the whole file.
+    most
+        Most numbers that one array may hold.
+
+    Returns
+    -------
+    The arrays by name, read-only, in their stored kind of number; a text is an array
+    of shape ().
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    ValueError
+        The file is damaged, of another kind, from a newer version, or too large.
+
+    Source: project, W04 and W05.
+
+    Examples
+    --------
+    >>> read_arrays("nothing.npz", "refcloud.voxels", 1, {}, 1)
+    Traceback (most recent call last):
+    FileNotFoundError: nothing.npz: expected a refcloud.voxels file, got no such file
+    """
+    file = Path(path)
+    if not file.exists():
+        raise FileNotFoundError(f"{file}: expected a {format} file, got no such file")
+    if file.is_dir():
+        raise ValueError(f"{file}: expected a {format} file, got a folder")
+    try:
+        archive = zipfile.ZipFile(file)
+    except PermissionError:
+        raise ValueError(
+            f"{file}: expected a readable file, got no permission"
+        ) from None
+    except DAMAGE:
+        raise _refusal(
+            file, f"a {format} file", "one that is not a whole .npz"
+        ) from None
+    with archive:
+        _check_kind(file, archive, format, version)
+        sizes: dict[str, int] = {}
+        return {
+            name: _read(file, archive, name, shape, sizes, most)
+            for name, shape in shapes.items()
+        }
+
+
+def _refusal(file: Path, expected: str, got: str) -> ValueError:
+    return ValueError(f"{file}: expected {expected}, got {got}")
+
+
+def _check_kind(
+    file: Path, archive: zipfile.ZipFile, format: str, version: int
+) -> None:
+    """Compare the file's own format and version with those that are expected."""
+    kind = str(_read(file, archive, "format", Shape(), {}, 1))
+    if kind != format:
+        raise _refusal(file, f"a {format} file", f"format {kind!r}")
+    stored = _read(file, archive, "version", Shape("one"), {}, 1, scalar=True)
+    if stored.dtype.kind not in "iu" or stored < 1:
+        raise _refusal(file, "a version that is a whole number from 1", f"{stored}")
+    if stored > version:
+        raise _refusal(
+            file, f"{format} version {version} or older", f"version {stored}; update"
+        )
+
+
+def _read(
+    file: Path,
+    archive: zipfile.ZipFile,
+    name: str,
+    shape: Shape,
+    sizes: dict[str, int],
+    most: int,
+    scalar: bool = False,
+) -> np.ndarray:
+    """Read one member: its header first, its numbers when they fit."""
+    if name + SUFFIX not in archive.NameToInfo:
+        raise _refusal(file, f"an array {name!r}", "none of that name")
+    info = archive.getinfo(name + SUFFIX)
+    try:
+        with archive.open(info) as member:
+            stored, fortran, dtype = _header(member)
+            if not scalar and not shape.fits(stored, sizes):
+                raise _UnfitError(
+                    f"{name} of shape {_named(shape, sizes)}", f"shape {stored}"
+                )
+            if scalar and stored != ():
+                raise _UnfitError(f"{name} as one number", f"shape {stored}")
+            _check_dtype(name, dtype, text=not shape.axes)
+            count = math.prod(stored)
+            if count > most:
+                raise _UnfitError(f"{name} of at most {most} numbers", f"{count}")
+            size = count * dtype.itemsize
+            if size > info.file_size:
+                raise _UnfitError(f"{name} with {count} numbers", "fewer")
+            data = member.read(size)
+            if len(data) != size or member.read(1):  # the end also proves the checksum
+                raise _UnfitError(f"{name} with {count} numbers", "another count")
+    except _UnfitError as unfit:
+        raise _refusal(file, unfit.expected, unfit.got) from None
+    except DAMAGE:
+        raise _refusal(file, f"a readable array {name!r}", "a damaged one") from None
+    array = np.frombuffer(data, dtype).reshape(stored, order="F" if fortran else "C")
+    return array.astype(dtype.newbyteorder("="), copy=False)
+
+
+class _UnfitError(Exception):
+    """An array's header does not fit; the file's name is added where it is caught."""
+
+    def __init__(self, expected: str, got: str) -> None:
+        super().__init__(expected)
+        self.expected, self.got = expected, got
+
+
+def _header(member: Any) -> tuple[tuple[int, ...], bool, np.dtype]:
+    """Read shape, order and kind of number, and none of the numbers."""
+    version = np.lib.format.read_magic(member)
+    if version == (1, 0):
+        shape, fortran, dtype = np.lib.format.read_array_header_1_0(member)
+    elif version == (2, 0):
+        shape, fortran, dtype = np.lib.format.read_array_header_2_0(member)
+    else:
+        raise ValueError("a header of another version")
+    if any(not isinstance(axis, int) or axis < 0 for axis in shape):
+        raise ValueError("a size below 0")
+    return shape, fortran, dtype
+
+
+def _check_dtype(name: str, dtype: np.dtype, text: bool) -> None:
+    if text:
+        longest = LONGEST_TEXT * np.dtype("U1").itemsize
+        if dtype.kind != "U" or dtype.itemsize > longest:
+            raise _UnfitError(f"{name} as a short text", f"{dtype}")
+    elif dtype.kind not in "iuf" or dtype.itemsize > WIDEST_NUMBER:
+        raise _UnfitError(f"{name} of integers or floats", f"{dtype}")
+
+
+def _named(shape: Shape, sizes: dict[str, int]) -> str:
+    known = ", ".join(f"{k} = {v}" for k, v in sizes.items() if k in shape.axes)
+    return f"{shape} with {known}" if known else f"{shape}"
