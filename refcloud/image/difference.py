@@ -80,7 +80,7 @@ def compare_codes(
     _check_codes("b", b)
     _check_shapes(a, b)
     off = np.abs(a.astype(np.int16) - b).max(axis=-1)  # (H, W), of the worst channel
-    share = np.count_nonzero(off) / off.size
+    share = int(np.count_nonzero(off)) / off.size
     worst = int(off.max())
     width = off.shape[1]
     order = np.argsort(-off, axis=None, kind="stable")[:MOST_NAMED]
