@@ -1,0 +1,41 @@
+"""Noise: points or a grid to values, from integer hashes to sums of octaves."""
+
+from refcloud.noise.fractal import (
+    octave_bound,
+    octave_frame,
+    octave_sum,
+    octave_sum_grid,
+)
+from refcloud.noise.hashing import elias2d, lattice_random, man2003, uniform
+from refcloud.noise.interpolate import (
+    catmull_rom,
+    cosine,
+    cubic,
+    hermite,
+    linear,
+    quintic,
+    taps,
+)
+from refcloud.noise.lattice import smoothed
+from refcloud.noise.value import value, value_grid
+
+__all__ = [
+    "catmull_rom",
+    "cosine",
+    "cubic",
+    "elias2d",
+    "hermite",
+    "lattice_random",
+    "linear",
+    "man2003",
+    "octave_bound",
+    "octave_frame",
+    "octave_sum",
+    "octave_sum_grid",
+    "quintic",
+    "smoothed",
+    "taps",
+    "uniform",
+    "value",
+    "value_grid",
+]
