@@ -158,9 +158,10 @@ def blend_patch(
         "ONE",
         "ONE_MINUS_SRC_ALPHA",
         "FUNC_ADD",
-    ):  # the pair of every splat: the same sums and products, in place
-        destination *= 1.0 - source[..., 3:]
-        destination += source
+    ):  # the pair of every splat: the same sums and products, fewer of them
+        covered = destination * (1.0 - source[..., 3:])
+        covered += source
+        destination[:] = covered
         return
     destination[:] = blended(
         source, destination, src_factor, dst_factor, equation, constant
