@@ -162,7 +162,24 @@ def scattered_man2003(
             f"tau: expected at most {limit:.4g}, where eq 26 and 27 stop making light,"
             f' got {float(tau.max()):.4g}; lower tau or albedo, or say gain="hold"'
         )
-    # Beyond the limit g + T is held at 1; below it the paper's product stands.
+    return held_share(tau, kappa, limit)
+
+
+def held_share(tau: Array, kappa: float, limit: float) -> Array:
+    """Hold g + T at 1 beyond the limit, unchecked: inner form of `scattered_man2003`.
+
+    Parameters
+    ----------
+    tau, kappa
+        As `scattered_man2003`.
+    limit
+        Of `largest_steady_tau`.
+
+    Returns
+    -------
+    The same shape as tau.
+    """
+    # Past limit + 1 the second term is the smaller one: no product can overflow.
     return np.minimum(kappa * np.minimum(tau, limit + 1.0), -np.expm1(-tau))
 
 
@@ -193,5 +210,20 @@ def scattered_split(
     >>> scattered_split([0.0], 0.7)
     array([0.])
     """
-    tau = np.asarray(tau)
+    return split_share(np.asarray(tau), forward)
+
+
+def split_share(tau: Array, forward: float) -> Array:
+    """Give the share scattered on, unchecked: the inner form of `scattered_split`.
+
+    Parameters
+    ----------
+    tau, forward
+        As `scattered_split`.
+
+    Returns
+    -------
+    The same shape as tau.
+    """
+    # The difference of the two exponentials, written so that nothing cancels.
     return np.exp(-(1.0 - forward) * tau) * -np.expm1(-forward * tau)

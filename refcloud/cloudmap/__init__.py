@@ -1,0 +1,26 @@
+"""From noise to a cloud map: ellipsoids, the cumulus shape, and the map's file."""
+
+from refcloud.cloudmap.connected import largest_part
+from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
+from refcloud.cloudmap.file import load_voxels, save_voxels
+from refcloud.cloudmap.generate import generate
+from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
+from refcloud.cloudmap.sample import trilinear
+from refcloud.cloudmap.voxels import VoxelGrid, cell_centres, cell_size
+
+__all__ = [
+    "VoxelGrid",
+    "cell_centres",
+    "cell_size",
+    "cumulus_ellipsoids",
+    "depth_inside",
+    "displace",
+    "evaluate_quadric",
+    "generate",
+    "largest_part",
+    "load_voxels",
+    "modulate",
+    "quadric",
+    "save_voxels",
+    "trilinear",
+]

@@ -1,0 +1,116 @@
+"""What each ball sends toward one eye, and the air in between."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from refcloud.camera import AnyCamera, Camera, axes
+from refcloud.checking import check_fields, checked
+from refcloud.conventions import WHOLE_SPHERE, Array, Colour, Positive
+from refcloud.lighting.sunward import LitMetaballs, ball_depths, handed_on
+from refcloud.optics import PHASE_MAN2003, coupling_man2003, phase
+
+
+@dataclass(frozen=True)
+class Haze:
+    """Air between the cloud and the eye.
+
+    Attributes
+    ----------
+    color
+        What very distant balls look like, RGB radiance.
+    length
+        Distance over which a ball's own light falls to 1/e, scene units.
+    """
+
+    color: Colour
+    length: Annotated[float, Positive]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@checked
+def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
+    """Give the radiance that each ball would show if nothing came through it.
+
+    Formula: ambient + sum over suns of albedo phase(cos_theta) light; in the paper's
+    rule each sun's term is g* / (1 - T) with g* = albedo tau phase Omega I / (4 pi)
+
+    Parameters
+    ----------
+    lit
+        The balls and their light, of `sunward`.
+    camera
+        Where the eye is; an orthographic camera sees every ball along one direction.
+
+    Returns
+    -------
+    Shape (N, 3), radiance, at least 0. A splat adds this times its opacity.
+
+    Source: paper M, eq 26 and 29; E20, E22, E23, E26.
+    """
+    balls, medium = lit.balls, lit.medium
+    gain = _gain(lit)
+    colours = np.array(lit.ambient)
+    toward_eye = _toward_eye(balls.centers, camera)
+    for sun, light in zip(lit.suns, lit.light, strict=True):
+        # The sun's light travels along -direction and leaves toward the eye.
+        cos_theta = np.clip(-(toward_eye @ sun.direction), -1.0, 1.0)
+        colours += medium.albedo * phase(medium, cos_theta)[:, None] * light * gain
+    return colours
+
+
+def _gain(lit: LitMetaballs) -> Array:
+    """Give what the scattering rule puts on top of albedo times phase, (N, 3) or 1."""
+    look = lit.look
+    if look.scattering == "split":
+        return np.ones(3)
+    gain = np.empty((len(lit.balls.radii), 3))
+    for channel in range(3):
+        albedo = float(lit.medium.albedo[channel])
+        tau = ball_depths(lit.balls, float(lit.medium.sigma_t[channel]), look)
+        kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
+        # Depth as eq 26 counts it, held where pass 1 holds it, over the opacity.
+        held = handed_on(look, albedo, 0.0)(tau)
+        effective = np.divide(held, kappa, out=np.array(tau), where=kappa > 0.0)
+        opacity = -np.expm1(-tau)
+        thin = opacity <= 0.0
+        gain[:, channel] = np.where(thin, 1.0, effective / np.where(thin, 1.0, opacity))
+    return gain * (look.solid_angle / WHOLE_SPHERE)
+
+
+def _toward_eye(centers: Array, camera: AnyCamera) -> Array:
+    """Give wo, the unit vector from each ball to the eye."""
+    if not isinstance(camera, Camera):
+        return np.broadcast_to(axes(camera)[2], centers.shape)
+    offset = camera.eye - centers
+    length = np.sqrt(np.square(offset).sum(axis=1, keepdims=True))
+    # A ball around the eye itself is seen along the view axis.
+    away = length > 0.0
+    return np.where(away, offset / np.where(away, length, 1.0), axes(camera)[2])
+
+
+def clearness(haze: Haze | None, centers: Array, camera: AnyCamera) -> Array:
+    """Give the share of each ball's light that passes the air, unchecked.
+
+    Parameters
+    ----------
+    haze
+        The air; None for none.
+    centers
+        Shape (N, 3), scene units.
+    camera
+        Where the eye is.
+
+    Returns
+    -------
+    Shape (N,), in [0, 1]: exp(-distance / length).
+    """
+    if haze is None:
+        return np.ones(len(centers))
+    distance = np.sqrt(np.square(centers - camera.eye).sum(axis=1))
+    return np.exp(-distance / haze.length)

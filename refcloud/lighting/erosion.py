@@ -1,0 +1,137 @@
+"""Eroded footprints: noise, anchored in the world, that eats into a ball's edge.
+
+An extension of the paper: a smooth footprint shows as cotton; where the noise is low
+the footprint is cut back, most where it is thin. Erosion only takes: the weight never
+grows, so that no light is made.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from refcloud.checking import checked
+from refcloud.cloudmap import VoxelGrid
+from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
+from refcloud.noise import octave_sum_grid
+
+OCTAVES = 5
+PERSISTENCE = 0.6
+NEARLY_ALL = 0.62  # about the 97 % point of |eq 1| for these octaves, before clipping
+SAMPLES = 2.0  # of the finest octave's cell
+MOST_CELLS = 1 << 22  # 32 MiB of float64; a wider cloud gets a coarser table
+SOFT = 0.3  # width over which the cut-back footprint rises
+
+
+@checked
+def detail_grid(
+    lower: Annotated[Array, Shape(3)],
+    upper: Annotated[Array, Shape(3)],
+    *,
+    cell: Annotated[float, Positive],
+    seed: Seed = 0,
+) -> VoxelGrid:
+    """Tabulate the noise that erodes footprints, over a box of the world.
+
+    Formula: min(|sum of 5 octaves| / 0.62, 1) at cell centres on whole multiples of the
+    spacing, so that two boxes agree where they overlap
+
+    Parameters
+    ----------
+    lower, upper
+        Corners of the box, shape (3,), scene units.
+    cell
+        Coarsest cell of the noise, scene units, above 0.
+    seed
+        Chooses the noise.
+
+    Returns
+    -------
+    The table, values in [0, 1]; octaves left out because the box is wide stand in its
+    `skipped`.
+
+    Source: look.md, section 1 (eroded footprint), anchored in the world.
+    """
+    spacing = cell / 2 ** (OCTAVES - 1) / SAMPLES
+    while np.prod(np.ceil((upper - lower) / spacing) + 2.0) > MOST_CELLS:
+        spacing *= 2.0
+    first = np.floor(lower / spacing)
+    count = (np.floor(upper / spacing) - first + 1.0).astype(int)
+    x, y, z = (
+        (a + np.arange(n) + 0.5) * (spacing / cell)
+        for a, n in zip(first, count, strict=True)
+    )
+    noise, skipped = octave_sum_grid(
+        x,
+        y,
+        z,
+        seed=seed,
+        octaves=OCTAVES,
+        persistence=PERSISTENCE,
+        normalize="none",
+        finest=0.5 * spacing / cell,
+    )
+    rows = tuple(
+        Skipped("erosion", row.what, row.skipped, row.of, row.bound / NEARLY_ALL)
+        for row in skipped
+    )
+    return VoxelGrid(
+        np.minimum(noise / NEARLY_ALL, 1.0),
+        first * spacing,
+        (first + count) * spacing,
+        rows,
+    )
+
+
+@checked
+def eroded(
+    weight: Annotated[Array, Range(0.0, 1.0)],
+    noise: Annotated[Array, Range(0.0, 1.0)],
+    *,
+    erosion: Annotated[float, Range(0.0, 1.0, open_upper=True)],
+) -> Array:
+    """Cut a footprint back where the noise is low.
+
+    Formula: lo = e (1 - n), w' = (1 + 0.3) max(w - lo, 0) / (1 + 0.3 - lo) <= w
+
+    Parameters
+    ----------
+    weight
+        Footprint, any shape, in [0, 1].
+    noise
+        Of `detail_grid`, the same shape, in [0, 1].
+    erosion
+        e, in [0, 1); 0 leaves the footprint as it is.
+
+    Returns
+    -------
+    The weight, the same shape, in [0, weight].
+
+    Source: look.md, section 1 (eroded footprint).
+
+    Examples
+    --------
+    >>> eroded([0.2, 1.0], [0.0, 1.0], erosion=0.5)
+    array([0., 1.])
+    """
+    return eroded_of(weight, noise, erosion)
+
+
+def eroded_of(weight: Array, noise: Array, erosion: float) -> Array:
+    """Cut a footprint back without a check: the inner form of `eroded`.
+
+    Parameters
+    ----------
+    weight, noise, erosion
+        As `eroded`.
+
+    Returns
+    -------
+    As `eroded`, a new array.
+    """
+    low = erosion * (1.0 - noise)
+    kept = np.maximum(weight - low, 0.0)
+    kept *= 1.0 + SOFT
+    kept /= (1.0 + SOFT) - low
+    return kept
