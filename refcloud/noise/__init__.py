@@ -14,10 +14,10 @@ from refcloud.noise.interpolate import (
     hermite,
     linear,
     quintic,
-    taps,
 )
 from refcloud.noise.lattice import smoothed
 from refcloud.noise.value import value, value_grid
+from refcloud.noise.weights import taps
 
 __all__ = [
     "catmull_rom",

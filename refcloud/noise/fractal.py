@@ -15,9 +15,9 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
 from refcloud.noise.hashing import _hash, _words, uniform
-from refcloud.noise.interpolate import PEAKS, Interpolant
 from refcloud.noise.lattice import _reduced
 from refcloud.noise.value import Axes, Points, _add_grid, _in_chunks, _value
+from refcloud.noise.weights import PEAKS, Interpolant
 
 Normalize = Literal["clip", "bound", "none"]
 # 32 octaves: the finest cell is 2^-31 of the first, below float64 at 2^21 cells.

@@ -1,36 +1,21 @@
 """Interpolation between lattice values: the paper's three forms and three better ones.
 
-Each form is a weighted sum of two or four neighbours; `taps` gives those weights.
-Smooth is not accurate: halving the spacing divides the error by 4 for linear, by 2 for
-cosine, Hermite, quintic and the paper's cubic, by 8 for Catmull-Rom (E13).
+Each form is a weighted sum of two or four neighbours; `refcloud.noise.taps` gives the
+weights. Smooth is not accurate: halving the spacing divides the error by 4 for linear,
+by 2 for cosine, Hermite, quintic and the paper's cubic, by 8 for Catmull-Rom (E13).
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range
 
-Interpolant = Literal["linear", "cosine", "cubic", "hermite", "quintic", "catmull_rom"]
 Values = Annotated[Array, Range()]
 Fraction = Annotated[Array, Range(0.0, 1.0)]
-
-TWO = (0, 1)  # neighbours at the cell's two ends
-FOUR = (-1, 0, 1, 2)  # and one more on each side
-
-# Largest sum of |weights| along one axis, so that noise stays within its cube (E12).
-PEAKS: dict[Interpolant, float] = {
-    "linear": 1.0,
-    "cosine": 1.0,
-    "cubic": 1.5,
-    "hermite": 1.0,
-    "quintic": 1.0,
-    "catmull_rom": 1.25,
-}
 
 
 @checked
@@ -206,58 +191,6 @@ def catmull_rom(v0: Values, v1: Values, v2: Values, v3: Values, t: Fraction) -> 
     third = 3.0 * (v1 - v2) + v3 - v0
     second = 2.0 * v0 - 5.0 * v1 + 4.0 * v2 - v3
     return v1 + 0.5 * t * (v2 - v0 + t * (second + t * third))
-
-
-@checked
-def taps(interpolant: Interpolant, t: Fraction) -> tuple[Array, NDArray[np.int64]]:
-    """Give an interpolant as weights of the neighbours.
-
-    Formula: value(t) = sum over k of weights[k] * v[offsets[k]]
-
-    Parameters
-    ----------
-    interpolant
-        Which form.
-    t
-        Place in the cell, shape (...,).
-
-    Returns
-    -------
-    The weights, shape (K, ...), which sum to 1, and the neighbours' offsets from the
-    cell's lower end, shape (K,), where K is 2 or 4.
-
-    Source: paper M, eq 4-6 (N08-N12).
-
-    Examples
-    --------
-    >>> taps("linear", 0.25)
-    (array([0.75, 0.25]), array([0, 1]))
-    """
-    weights, offsets = _taps(interpolant, t)
-    return np.stack(weights), np.array(offsets)
-
-
-def _taps(
-    interpolant: Interpolant, t: Array
-) -> tuple[tuple[Array, ...], tuple[int, ...]]:
-    if interpolant == "cubic":
-        s = 1.0 - t
-        first, last = -t * s * s, -t * t * s
-        return (first, 1.0 - t * t * (2.0 - t), t * (1.0 + t * s), last), FOUR
-    if interpolant == "catmull_rom":
-        s = 1.0 - t
-        first, last = -0.5 * t * s * s, -0.5 * t * t * s
-        second = 1.0 + t * t * (1.5 * t - 2.5)
-        return (first, second, 0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), last), FOUR
-    if interpolant == "cosine":
-        w = 0.5 * (1.0 - np.cos(np.pi * t))
-    elif interpolant == "hermite":
-        w = _hermite_weight(t)
-    elif interpolant == "quintic":
-        w = _quintic_weight(t)
-    else:
-        w = t
-    return (1.0 - w, w), TWO
 
 
 def _hermite_weight(t: Array) -> Array:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed
 from refcloud.noise.hashing import Integers, Words, _lattice_random, _shaped, _words
-from refcloud.noise.interpolate import Interpolant, _taps
+from refcloud.noise.weights import Interpolant, _taps
 
 Cells = NDArray[np.int64]
 
@@ -26,6 +26,7 @@ Cells = NDArray[np.int64]
 WEIGHTS = CENTRE, SIDE, EDGE, CORNER = (108, 8, 3, 3)  # EDGE equals CORNER
 DENOMINATOR = 216
 
+SLAB = 1 << 15  # values in one step over a block: its temporaries fit a core's cache
 PERIOD = 2.0**32  # lattice coordinates wrap here, for every hash
 
 
@@ -123,13 +124,20 @@ def _cells(reduced: Array) -> tuple[Cells, Array]:
 
 def _block(x: Cells, y: Cells, z: Cells, seed: int | None, smooth: bool) -> Array:
     """Give f on lattice lines as [z, y, x]; smoothing uses up one line at each end."""
-    g = _lattice_random(
-        x.astype(np.uint64)[np.newaxis, np.newaxis, :],
-        y.astype(np.uint64)[np.newaxis, :, np.newaxis],
-        z.astype(np.uint64)[:, np.newaxis, np.newaxis],
-        seed,
-    )
-    return _smoothed_inside(g) if smooth else g
+    columns = x.astype(np.uint64)
+    rows = y.astype(np.uint64)[:, np.newaxis]
+    layers = z.astype(np.uint64)[:, np.newaxis, np.newaxis]
+    g: Array = np.empty((z.size, y.size, x.size))
+    planes = max(1, SLAB // (y.size * x.size))
+    for first in range(0, z.size, planes):
+        part = slice(first, first + planes)
+        g[part] = _lattice_random(columns, rows, layers[part], seed)
+    if not smooth:
+        return g
+    f: Array = np.empty((z.size - 2, y.size - 2, x.size - 2))
+    for first in range(0, z.size - 2, planes):
+        f[first : first + planes] = _smoothed_inside(g[first : first + planes + 2])
+    return f
 
 
 def _smoothed_inside(g: Array) -> Array:

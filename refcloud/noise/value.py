@@ -7,6 +7,7 @@ same order, so their values have the same bits.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from typing import Annotated
 
@@ -15,8 +16,8 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, MayBeNotFinite, Seed, Shape
 from refcloud.noise.hashing import _lattice_random
-from refcloud.noise.interpolate import Interpolant, _taps
 from refcloud.noise.lattice import (
+    SLAB,
     AxisTaps,
     Cells,
     _axis,
@@ -25,6 +26,7 @@ from refcloud.noise.lattice import (
     _reduced,
     _smoothed_inside,
 )
+from refcloud.noise.weights import Interpolant, _taps
 
 Points = Annotated[Array, Shape("...", 3), MayBeNotFinite]
 
@@ -32,8 +34,7 @@ Axes = tuple[Array, Array, Array]  # x, y and z, scattered (n,) or of a grid
 
 CHUNK = 1 << 15  # scattered points at a time: temporaries of a few MB
 HASHED_CHUNK = 1 << 10  # of them, where each hashes its own 64 neighbours: half a MB
-MOST_LATTICE = 1 << 21  # lattice values at a time on a grid: 16 MB, some three times
-SLAB = 1 << 16  # grid values in one step of the last contraction: fits a core's cache
+MOST_LATTICE = 1 << 21  # lattice values at a time: 16 MB, held some three times
 
 
 @checked
@@ -149,7 +150,8 @@ def _neighbours(
         int(c.max()) + int(offsets[-1]) + 1 - low
         for c, low in zip(cells, lows, strict=True)
     ]
-    if counts[0] * counts[1] * counts[2] <= n * taps**3:
+    box = math.prod(count + 2 * halo for count in counts)
+    if 2 * box <= n * (taps + 2 * halo) ** 3 and box <= MOST_LATTICE:
         # The points lie close together: hash their box once, and look up.
         table = _block(
             *(
