@@ -1,7 +1,15 @@
 """Metaballs: a cloud map as a few hundred balls of density."""
 
+from refcloud.metaballs.approximate import approximate
 from refcloud.metaballs.balls import Metaballs, voxel_balls
+from refcloud.metaballs.errors import FitErrors, errors_of_fit
 from refcloud.metaballs.field import field, field_grid
+from refcloud.metaballs.file import load_metaballs, save_metaballs
+from refcloud.metaballs.heights import (
+    gradient_descent,
+    largest_eigenvalue,
+    non_negative_least_squares,
+)
 from refcloud.metaballs.integrals import axis_depth, integral, normalisation
 from refcloud.metaballs.kernels import (
     chord,
@@ -10,18 +18,35 @@ from refcloud.metaballs.kernels import (
     profile,
     wyvill,
 )
+from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd, rms_radii
+from refcloud.metaballs.prune import prune
+from refcloud.metaballs.weights import depth
 
 __all__ = [
+    "Clusters",
+    "FitErrors",
     "Metaballs",
+    "adaptive_kmeans",
+    "approximate",
     "axis_depth",
     "chord",
+    "depth",
+    "errors_of_fit",
     "field",
     "field_grid",
     "gaussian",
+    "gradient_descent",
     "integral",
+    "largest_eigenvalue",
+    "lloyd",
+    "load_metaballs",
+    "non_negative_least_squares",
     "normalisation",
     "printed_wyvill",
     "profile",
+    "prune",
+    "rms_radii",
+    "save_metaballs",
     "voxel_balls",
     "wyvill",
 ]

@@ -187,13 +187,14 @@ def _squared_ratio(r: Array, R: Array) -> Array:
 
 
 def profile_of(q: Array, kernel: Kernel) -> Array:
+    """Evaluate `profile` without checking q."""
     if kernel == "wyvill":
         p = np.maximum(1.0 - q, 0.0)
         return p * p * (5.0 + 4.0 * p) / 9.0
     return np.where(q < 1.0, np.exp(-(CUT**2) * np.minimum(q, 1.0)), 0.0)
 
 
-def _slope(q: Array, kernel: Kernel) -> Array:
+def slope_of(q: Array, kernel: Kernel) -> Array:
     """Differentiate the profile by q, inside the ball."""
     if kernel == "wyvill":
         p = np.maximum(1.0 - q, 0.0)
@@ -202,6 +203,7 @@ def _slope(q: Array, kernel: Kernel) -> Array:
 
 
 def chord_of(q: Array, kernel: Kernel) -> Array:
+    """Evaluate `chord` without checking q."""
     p = np.maximum(1.0 - q, 0.0)  # s squared
     s = np.sqrt(p)
     if kernel == "wyvill":

@@ -1,0 +1,288 @@
+"""Phases 1 and 2: where the balls go, and how far their voxels spread.
+
+`adaptive_kmeans` is the paper's, one voxel at a time; `lloyd` moves all centres at
+once. Both run in coordinates that are centred and scaled to 1, so that neither an
+offset nor a unit shows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refcloud.checking import checked
+from refcloud.conventions import Array, Positive, Range, Seed, Shape
+from refcloud.noise.hashing import uniform
+
+Labels = NDArray[np.integer]
+
+# First word of each hash, so that no two choices share their numbers.
+START, VISIT, SPREAD = 1, 2, 3
+# k-means++ draws a batch of new centres at once: this share of those it has.
+BATCH = 8
+# Numbers in one block of scores: 1 MB of float32 stays in the cache.
+BLOCK = 1 << 18
+# Squared distances below this share of the cloud's are rounding of equal points.
+SAME = 1e-13
+
+
+@dataclass(frozen=True)
+class Clusters:
+    """Groups of points around centres; none is empty.
+
+    Attributes
+    ----------
+    centers
+        Shape (N, 3), scene units.
+    assignment
+        Which centre each point belongs to, shape (K,).
+    epochs
+        How often all points were visited.
+    """
+
+    centers: Array
+    assignment: Labels
+    epochs: int
+
+
+@checked
+def adaptive_kmeans(
+    points: Annotated[Array, Shape("K", 3)],
+    count: Annotated[int, Range(1)],
+    *,
+    seed: Seed = 0,
+    order: Literal["shuffled", "raster"] = "shuffled",
+    minimal_rate: Annotated[float, Range(0.0, 1.0, open_lower=True)] = 0.05,
+    most_epochs: Annotated[int, Range(1)] = 8,
+) -> Clusters:
+    """Cluster points by the paper's phase 1: each visit moves the nearest centre.
+
+    Formula: w_k += (x_j - w_k) / sqrt(n_k), n_k = visits that w_k has won, from 1
+
+    Parameters
+    ----------
+    points
+        The patterns, shape (K, 3), scene units.
+    count
+        Number of centres wanted. There are never more than points.
+    seed
+        Which patterns the centres start on, and the shuffled order.
+    order
+        How an epoch visits the patterns. In raster order the centres chase the sweep
+        and end up to six times worse.
+    minimal_rate
+        Where the learning ends: the mean rate of all centres.
+    most_epochs
+        Where it ends at the latest.
+
+    Returns
+    -------
+    The clusters that are not empty (E18); ties go to the lower number.
+
+    Source: paper M, eq 21-22; E18.
+
+    Examples
+    --------
+    >>> adaptive_kmeans([[0, 0, 0], [0, 0, 1], [9, 9, 9]], 1).assignment
+    array([0, 0, 0])
+    """
+    scaled, middle, scale = _scaled(points)
+    centers = scaled[start_patterns(len(points), count, seed)]
+    hits = np.zeros(len(centers))
+    epoch = 0
+    while epoch < most_epochs and len(points):
+        for j in visits(len(points), epoch, seed, order):
+            away = scaled[j] - centers
+            k = np.einsum("ij,ij->i", away, away).argmin()
+            hits[k] += 1.0
+            centers[k] += away[k] / np.sqrt(hits[k])
+        epoch += 1
+        if (1.0 / np.sqrt(np.maximum(hits, 1.0))).mean() < minimal_rate:
+            break
+    return _clusters(scaled, centers, middle, scale, epoch)
+
+
+@checked
+def lloyd(
+    points: Annotated[Array, Shape("K", 3)],
+    weights: Annotated[Array, Shape("K"), Range(0.0)],
+    count: Annotated[int, Range(1)],
+    *,
+    seed: Seed = 0,
+    rounds: Annotated[int, Range(0)] = 15,
+) -> Clusters:
+    """Cluster weighted points by rounds of assignment and mean.
+
+    Formula: c_k = sum of w_j x_j / sum of w_j over the points nearest to c_k
+
+    Parameters
+    ----------
+    points
+        Shape (K, 3), scene units.
+    weights
+        Shape (K,), at least 0. Heavier points get more and closer centres.
+    count
+        Number of centres wanted. There are never more than distinct points of weight.
+    seed
+        Where the centres start: drawn by weight times squared distance (k-means++).
+    rounds
+        How often all centres move.
+
+    Returns
+    -------
+    The clusters that are not empty; distances are compared in float32.
+
+    Source: in place of paper M, eq 21-22; A13.
+
+    Examples
+    --------
+    >>> found = lloyd([[0, 0, 0], [0, 0, 1], [9, 9, 9]], [1, 3, 1], 2)
+    >>> sorted(found.centers[:, 2].round(6).tolist())
+    [0.75, 9.0]
+    """
+    scaled, middle, scale = _scaled(points)
+    largest = weights.max(initial=0.0)
+    if largest > 0.0:
+        weights = weights / largest
+    centers = scaled[spread_start(scaled, weights, count, seed)]
+    for _ in range(rounds if len(centers) else 0):
+        centers = _means(scaled, weights, centers, _nearest(scaled, centers))
+    return _clusters(scaled, centers, middle, scale, rounds)
+
+
+@checked
+def rms_radii(
+    points: Annotated[Array, Shape("K", 3)],
+    assignment: Labels,
+    *,
+    centers: Annotated[Array, Shape("N", 3)],
+    spacing: Annotated[float, Positive],
+) -> Array:
+    """Give each cluster's root mean square distance, phase 2.
+
+    Formula: sigma_k^2 = mean of |w_k - x_q|^2 over the cluster + h^2 / 4
+
+    Parameters
+    ----------
+    points
+        Centres of the voxels, shape (K, 3), scene units.
+    assignment
+        Which cluster each voxel belongs to, shape (K,).
+    centers
+        Shape (N, 3), scene units.
+    spacing
+        Edge h of a voxel, scene units. A voxel is a cube and not a point: its own mean
+        square distance h^2 / 4 keeps a cluster of one voxel from the radius 0 (E18).
+
+    Returns
+    -------
+    sigma, shape (N,), scene units.
+
+    Source: paper M, eq 23; E18.
+
+    Examples
+    --------
+    >>> rms_radii([[0, 0, 0]], np.array([0]), centers=[[0, 0, 0]], spacing=2.0)
+    array([1.])
+    """
+    away = (points - centers[assignment]) / spacing
+    squares = np.bincount(
+        assignment, np.einsum("ij,ij->i", away, away), minlength=len(centers)
+    )
+    members = np.bincount(assignment, minlength=len(centers))
+    return spacing * np.sqrt(squares / np.maximum(members, 1) + 0.25)
+
+
+def start_patterns(total: int, count: int, seed: int) -> Labels:
+    """Choose patterns at random, none of them twice (E18)."""
+    keys = uniform(START, np.arange(total), seed=seed)
+    return np.argsort(keys, kind="stable")[:count]
+
+
+def visits(total: int, epoch: int, seed: int, order: str) -> Labels:
+    """Give the order in which an epoch visits the patterns."""
+    if order == "raster":
+        return np.arange(total)
+    keys = uniform(VISIT, epoch, np.arange(total), seed=seed)
+    return np.argsort(keys, kind="stable")
+
+
+def spread_start(points: Array, weights: Array, count: int, seed: int) -> Labels:
+    """Draw starting points by weight times squared distance to those drawn before."""
+    chosen = _drawn(weights, 0, 1, seed)
+    own = np.einsum("ij,ij->i", points, points)
+    squares = np.full(len(points), np.inf)
+    new = chosen
+    while len(new) and len(chosen) < count:
+        # Keep the distance to the nearest of all that are drawn.
+        away = own[:, None] - 2.0 * points @ points[new].T + own[new]
+        np.minimum(squares, away.min(axis=1), out=squares)
+        squares[squares < SAME] = 0.0
+        squares[new] = 0.0
+        size = min(count - len(chosen), max(1, len(chosen) // BATCH))
+        new = _drawn(weights * squares, len(chosen), size, seed)
+        chosen = np.concatenate([chosen, new])
+    return chosen
+
+
+def _drawn(mass: Array, word: int, size: int, seed: int) -> Labels:
+    """Draw one point from each of equal shares of the mass, so that they spread."""
+    cumulative = np.cumsum(mass)
+    if not len(mass) or cumulative[-1] <= 0.0:
+        return np.zeros(0, dtype=np.intp)
+    draws = uniform(SPREAD, word, np.arange(size), seed=seed)
+    targets = (np.arange(size) + draws) / size * cumulative[-1]
+    drawn = np.unique(np.searchsorted(cumulative, targets, "right"))
+    return drawn[drawn < len(mass)]  # rounding may end beyond the last
+
+
+def _scaled(points: Array) -> tuple[Array, Array, float]:
+    """Centre points and scale them into [-1, 1]."""
+    middle = points.mean(axis=0) if len(points) else np.zeros(3)
+    centred = points - middle
+    scale = float(np.abs(centred).max(initial=0.0)) or 1.0
+    return centred / scale, middle, scale
+
+
+def _nearest(points: Array, centers: Array) -> Labels:
+    """Find the nearest centre of each point, lowest number first, in float32."""
+    # The largest x.c - |c|^2/2 is the nearest: one matrix product with 4 columns.
+    rows = np.hstack([points, np.full((len(points), 1), -1.0)]).astype(np.float32)
+    half = 0.5 * np.einsum("ij,ij->i", centers, centers)
+    columns = np.vstack([centers.T, half]).astype(np.float32)
+    step = max(1, BLOCK // max(1, len(centers)))
+    parts = [
+        (rows[start : start + step] @ columns).argmax(axis=1)
+        for start in range(0, len(rows), step)
+    ]
+    return np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
+
+
+def _means(points: Array, weights: Array, centers: Array, labels: Labels) -> Array:
+    """Move each centre to the weighted mean of its points, if it has any."""
+    total = np.bincount(labels, weights, minlength=len(centers))
+    moved = np.stack(
+        [
+            np.bincount(labels, weights * points[:, axis], minlength=len(centers))
+            for axis in range(3)
+        ],
+        axis=1,
+    )
+    full = total > 0.0
+    moved[full] /= total[full, None]
+    moved[~full] = centers[~full]
+    return moved
+
+
+def _clusters(
+    points: Array, centers: Array, middle: Array, scale: float, epochs: int
+) -> Clusters:
+    """Assign the points once more, and leave out clusters that stay empty."""
+    if not len(centers):
+        return Clusters(np.zeros((0, 3)), np.zeros(len(points), dtype=np.intp), epochs)
+    labels = _nearest(points, centers)
+    used, labels = np.unique(labels, return_inverse=True)
+    return Clusters(centers[used] * scale + middle, labels, epochs)
