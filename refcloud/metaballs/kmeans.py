@@ -160,6 +160,7 @@ def rms_radii(
     *,
     centers: Annotated[Array, Shape("N", 3)],
     spacing: Annotated[float, Positive],
+    weights: Annotated[Array, Shape("K"), Range(0.0)] | None = None,
 ) -> Array:
     """Give each cluster's root mean square distance, phase 2.
 
@@ -176,6 +177,8 @@ def rms_radii(
     spacing
         Edge h of a voxel, scene units. A voxel is a cube and not a point: its own mean
         square distance h^2 / 4 keeps a cluster of one voxel from the radius 0 (E18).
+    weights
+        What each voxel counts in the mean, shape (K,). None is the paper's: all alike.
 
     Returns
     -------
@@ -188,12 +191,14 @@ def rms_radii(
     >>> rms_radii([[0, 0, 0]], np.array([0]), centers=[[0, 0, 0]], spacing=2.0)
     array([1.])
     """
+    size = len(centers)
+    counts = np.ones(len(points)) if weights is None else weights
     away = (points - centers[assignment]) / spacing
-    squares = np.bincount(
-        assignment, np.einsum("ij,ij->i", away, away), minlength=len(centers)
-    )
-    members = np.bincount(assignment, minlength=len(centers))
-    return spacing * np.sqrt(squares / np.maximum(members, 1) + 0.25)
+    squares = counts * np.einsum("ij,ij->i", away, away)
+    total = np.bincount(assignment, counts, minlength=size)
+    mean = np.bincount(assignment, squares, minlength=size)
+    np.divide(mean, total, out=mean, where=total > 0.0)
+    return spacing * np.sqrt(mean + 0.25)
 
 
 def start_patterns(total: int, count: int, seed: int) -> Labels:
@@ -264,13 +269,10 @@ def _nearest(points: Array, centers: Array) -> Labels:
 def _means(points: Array, weights: Array, centers: Array, labels: Labels) -> Array:
     """Move each centre to the weighted mean of its points, if it has any."""
     total = np.bincount(labels, weights, minlength=len(centers))
-    moved = np.stack(
-        [
-            np.bincount(labels, weights * points[:, axis], minlength=len(centers))
-            for axis in range(3)
-        ],
-        axis=1,
-    )
+    moved = np.empty_like(centers)
+    for axis in range(3):
+        parts = weights * points[:, axis]
+        moved[:, axis] = np.bincount(labels, parts, minlength=len(centers))
     full = total > 0.0
     moved[full] /= total[full, None]
     moved[~full] = centers[~full]

@@ -94,7 +94,8 @@ class Pairs:
     def forward(self, heights: Array) -> Array:
         """Sum the balls at each voxel: the design matrix times the heights."""
         parts = self.value * heights[self.ball]
-        return np.bincount(self.voxel, parts, minlength=len(self.target))
+        total = np.bincount(self.voxel, parts, minlength=len(self.target))
+        return total.astype(np.float64, copy=False)
 
     def backward(self, residual: Array) -> Array:
         """Sum voxels over each ball: the transposed design matrix times a residual."""

@@ -12,9 +12,9 @@ from refcloud.metaballs.kernels import Kernel, slope_of
 from refcloud.metaballs.pairs import Pairs, Work, list_pairs
 
 # Damping: where it starts, and how a good and a bad step change it.
-DAMPING, EASE, HARDEN = 0.01, 0.3, 5.0
+DAMPING, EASE, HARDEN = 0.1, 0.3, 5.0
 # Conjugate gradients: most steps, and the share of the right side that ends them.
-INNER_STEPS, INNER_SHARE = 12, 0.03
+INNER_STEPS, INNER_SHARE = 8, 0.03
 # A step moves a centre by at most this many radii, and log R by at most this much.
 FARTHEST = 0.5
 # Diagonals below this share of their mean count as this: a ball of height 0 is no hole.
