@@ -69,9 +69,9 @@ def srgb_encode(linear: Unit) -> Array:
 
 
 def _encode(linear: Array) -> Array:
-    power = (1.0 + SRGB_OFFSET) * linear ** (1.0 / SRGB_POWER) - SRGB_OFFSET
-    encoded = np.where(linear < SRGB_JOIN, SRGB_SLOPE * linear, power)
-    return np.minimum(encoded, 1.0)  # the power's last bit may pass 1
+    # 1 - 1.055 (1 - p) is 1.055 p - 0.055, and exactly 1 at white.
+    power = 1.0 - (1.0 + SRGB_OFFSET) * (1.0 - linear ** (1.0 / SRGB_POWER))
+    return np.where(linear < SRGB_JOIN, SRGB_SLOPE * linear, power)
 
 
 @checked
