@@ -5,11 +5,7 @@ from refcloud.metaballs.balls import Metaballs, voxel_balls
 from refcloud.metaballs.errors import FitErrors, errors_of_fit
 from refcloud.metaballs.field import field, field_grid
 from refcloud.metaballs.file import load_metaballs, save_metaballs
-from refcloud.metaballs.heights import (
-    gradient_descent,
-    largest_eigenvalue,
-    non_negative_least_squares,
-)
+from refcloud.metaballs.heights import gradient_descent, largest_eigenvalue
 from refcloud.metaballs.integrals import axis_depth, integral, normalisation
 from refcloud.metaballs.kernels import (
     chord,
@@ -18,8 +14,11 @@ from refcloud.metaballs.kernels import (
     profile,
     wyvill,
 )
-from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd, rms_radii
+from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
+from refcloud.metaballs.nonnegative import non_negative_least_squares
+from refcloud.metaballs.placement import placed
 from refcloud.metaballs.prune import prune
+from refcloud.metaballs.spread import rms_radii
 from refcloud.metaballs.weights import depth
 
 __all__ = [
@@ -42,6 +41,7 @@ __all__ = [
     "load_metaballs",
     "non_negative_least_squares",
     "normalisation",
+    "placed",
     "printed_wyvill",
     "profile",
     "prune",

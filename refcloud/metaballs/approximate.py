@@ -11,11 +11,13 @@ from refcloud.checking import checked
 from refcloud.cloudmap.voxels import VoxelGrid
 from refcloud.conventions import Array, Range, Seed, Skipped
 from refcloud.metaballs.balls import Metaballs
-from refcloud.metaballs.heights import descend, solve_non_negative
+from refcloud.metaballs.heights import descend
 from refcloud.metaballs.kernels import Kernel
-from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd, rms_radii
+from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
+from refcloud.metaballs.nonnegative import solve_non_negative
 from refcloud.metaballs.pairs import Pairs, Work, list_pairs, prepare
 from refcloud.metaballs.refine import Fit, refine
+from refcloud.metaballs.spread import rms_radii
 from refcloud.metaballs.weights import voxel_weights
 
 Observe = Callable[[str, Any], Any]

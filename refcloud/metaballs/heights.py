@@ -1,4 +1,4 @@
-"""Phase 3: the balls' densities, by the paper's gradient and by least squares >= 0."""
+"""Phase 3: the balls' densities by the paper's gradient, and its stable limit."""
 
 from __future__ import annotations
 
@@ -17,11 +17,6 @@ SHARE_OF_LIMIT = 0.5
 # The power iteration ends where its estimate moves by less, or after MOST_POWERS.
 POWER_CHANGE = 1e-9
 MOST_POWERS = 500
-# Optimality: the projected gradient against the right side, and the most steps.
-OPTIMAL = 1e-12
-MOST_STEPS = 20_000
-# A gram matrix may differ from its transpose by rounding of this share.
-SYMMETRIC = 1e-9
 
 
 @checked
@@ -97,55 +92,6 @@ def gradient_descent(
     )  # fmt: skip
 
 
-@checked
-def non_negative_least_squares(
-    gram: Annotated[Array, Shape("N", "N")], right: Annotated[Array, Shape("N")]
-) -> Array:
-    """Find the heights, none below 0, that fit best.
-
-    Formula: v >= 0, s = gram v - right >= 0, v s = 0 (Karush, Kuhn and Tucker)
-
-    Parameters
-    ----------
-    gram
-        A^T A of the design matrix A, shape (N, N): symmetric, no eigenvalue below 0.
-    right
-        A^T y, shape (N,).
-
-    Returns
-    -------
-    v, shape (N,), at least 0, with the conditions met to 1e-12 of the right side.
-
-    Raises
-    ------
-    ValueError
-        The matrix is not symmetric, has a negative diagonal, or is so close to
-        singular that the conditions cannot be met.
-
-    Source: the standard third phase; eq 20 of paper M with v >= 0.
-
-    Examples
-    --------
-    >>> non_negative_least_squares([[2.0, 1.0], [1.0, 2.0]], [2.0, -1.0])
-    array([1., 0.])
-    """
-    diagonal = np.diagonal(gram)
-    skew = float(np.abs(gram - gram.T).max(initial=0.0))
-    if skew > SYMMETRIC * float(np.abs(gram).max(initial=0.0)):
-        raise ValueError(f"gram: expected a symmetric matrix, got a skew of {skew:.2g}")
-    if diagonal.min(initial=0.0) < 0.0:
-        raise ValueError(
-            f"gram: expected a diagonal from 0, got {diagonal.min():.2g}; use A^T A"
-        )
-    v, off = solve_non_negative(lambda x: gram @ x, diagonal, right, optimal=OPTIMAL)
-    if off > 10.0 * OPTIMAL:
-        raise ValueError(
-            "gram: expected a matrix that is not almost singular, got one that leaves"
-            f" {off:.2g} of the right side; leave out balls that repeat one another"
-        )
-    return v
-
-
 def power_iteration(product: Product, count: int) -> float:
     """Estimate the largest eigenvalue of a Gram matrix known by its products."""
     # Uneven on purpose: across no eigenvector that a design of kernels has.
@@ -191,73 +137,3 @@ def descend(
         v = v + 2.0 * rate * backward(residual)
         residual = y - forward(v)
     return v
-
-
-def solve_non_negative(
-    product: Product,
-    diagonal: Array,
-    right: Array,
-    *,
-    start: Array | None = None,
-    optimal: float,
-    most_steps: int = MOST_STEPS,
-) -> tuple[Array, float]:
-    """Minimise x.Gx/2 - right.x over x >= 0, G known by its products.
-
-    Conjugate gradients on the numbers above 0; a projected step where one of them
-    would fall below; a release of those at 0 once their gradient outweighs the rest
-    (Dostal's proportioning, which cannot cycle). Returns x and how far the projected
-    gradient is from 0, over the right side.
-    """
-    # Unit diagonal: balls of all sizes count alike. A ball without voxels stays at 0.
-    scale = np.zeros_like(right)
-    np.divide(1.0, np.sqrt(diagonal), out=scale, where=diagonal > 0.0)
-    b = scale * right
-    size = float(np.linalg.norm(b))
-    x = np.zeros_like(b)
-    if start is not None and size > 0.0:
-        np.divide(start, scale, out=x, where=scale > 0.0)
-    if size == 0.0:
-        return x, 0.0
-
-    def times(v: Array) -> Array:
-        return scale * product(scale * v)
-
-    step = 1.0 / power_iteration(times, len(b))
-    gradient = times(x) - b
-    free = np.where(x > 0.0, gradient, 0.0)
-    direction = free
-    off = np.inf
-    for _ in range(most_steps):
-        bound = np.where(x > 0.0, 0.0, np.minimum(gradient, 0.0))
-        off = float(np.sqrt(free @ free + bound @ bound)) / size
-        if off <= optimal:
-            break
-        reduced = np.minimum(x / step, free)
-        if bound @ bound > reduced @ free:  # release
-            image = times(bound)
-            length = float(gradient @ bound) / float(bound @ image)
-            x = x - length * bound
-            gradient = gradient - length * image
-            free = direction = np.where(x > 0.0, gradient, 0.0)
-            continue
-        image = times(direction)
-        curvature = float(direction @ image)
-        falling = direction > 0.0
-        reach = float((x[falling] / direction[falling]).min(initial=np.inf))
-        length = float(gradient @ direction) / curvature if curvature > 0.0 else reach
-        if length == np.inf:  # flat without end: singular, and as good as it gets
-            break
-        if length <= reach and curvature > 0.0:
-            x = np.maximum(x - length * direction, 0.0)  # rounding may end below
-            gradient = gradient - length * image
-            free = np.where(x > 0.0, gradient, 0.0)
-            direction = free - float(free @ image) / curvature * direction
-        else:  # up to the first 0, then one projected step
-            x = np.maximum(x - reach * direction, 0.0)
-            gradient = gradient - reach * image
-            free = np.where(x > 0.0, gradient, 0.0)
-            x = np.maximum(x - step * free, 0.0)
-            gradient = times(x) - b
-            free = direction = np.where(x > 0.0, gradient, 0.0)
-    return scale * x, off
