@@ -57,6 +57,7 @@ def rms_radii(
     away = (points - centers[assignment]) / spacing
     squares = counts * np.einsum("ij,ij->i", away, away)
     total = np.bincount(assignment, counts, minlength=size)
-    mean = np.bincount(assignment, squares, minlength=size)
-    np.divide(mean, total, out=mean, where=total > 0.0)
+    mean = np.zeros(size)
+    parts = np.bincount(assignment, squares, minlength=size)
+    np.divide(parts, total, out=mean, where=total > 0.0)
     return spacing * np.sqrt(mean + OWN_SPREAD)
