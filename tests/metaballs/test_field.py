@@ -92,7 +92,7 @@ def test_voxel_balls_hold_the_mass_of_the_cloud(kernel, cell):
     balls = voxel_balls(grid, kernel=kernel)
     x, _, z = cell_centres(grid)
     assert balls.centers[0].tolist() == [x[2], 2.5 * cell[1], z[2]]
-    # A fine sum over a box that holds both balls; a Gaussian jumps at its rim: off by 5e-3 at most.
+    # A fine sum over a box that holds both balls: the Gaussian's rim costs it most.
     step = 0.06
     axes = [np.arange(-1.5, 11.5, step) for _ in range(3)]
     total = field_grid(balls, axes[0], y=axes[1], z=axes[2]).sum() * step**3
