@@ -1,3 +1,60 @@
 """refcloud: a teaching reference for clouds, from noise to picture, in numpy."""
 
+from refcloud import scenes
+from refcloud.camera import Camera, OrthographicCamera
+from refcloud.cloudmap import VoxelGrid, generate, load_voxels, save_voxels
+from refcloud.conventions import Skipped
+from refcloud.image import (
+    Picture,
+    compare_codes,
+    difference_picture,
+    load_picture,
+)
+from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
+from refcloud.metaballs import (
+    Metaballs,
+    approximate,
+    errors_of_fit,
+    load_metaballs,
+    placed,
+    save_metaballs,
+    voxel_balls,
+)
+from refcloud.optics import Medium, Sun
+from refcloud.render import render
+from refcloud.sky import Sky, clear_sky, sky_gradient
+
 __version__ = "0.1.0"
+
+__all__ = [
+    "Camera",
+    "Haze",
+    "LitMetaballs",
+    "Look",
+    "Medium",
+    "Metaballs",
+    "OrthographicCamera",
+    "Picture",
+    "Skipped",
+    "Sky",
+    "Sun",
+    "VoxelGrid",
+    "approximate",
+    "clear_sky",
+    "compare_codes",
+    "difference_picture",
+    "errors_of_fit",
+    "eyeward",
+    "generate",
+    "load_metaballs",
+    "load_picture",
+    "load_voxels",
+    "placed",
+    "render",
+    "save_metaballs",
+    "save_voxels",
+    "scenes",
+    "sky_gradient",
+    "sunward",
+    "voxel_balls",
+]

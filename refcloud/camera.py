@@ -255,5 +255,5 @@ def frame(
     # Half sizes that the view must hold, seen from the front.
     need_y = max(half[1], half[0] / aspect, half[2] / aspect, 1e-300) * margin
     distance = need_y / math.tan(0.5 * FOV_Y) + half[2]
-    toward = unit_vector(np.array([0.0, -0.12, 1.0]))
+    toward = unit_vector(np.array([0.0, -0.28, 1.0]))
     return Camera(target + distance * toward, target, width=width, height=height)

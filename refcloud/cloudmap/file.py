@@ -65,6 +65,6 @@ def load_voxels(path: str | os.PathLike[str]) -> VoxelGrid:
     shapes = {"density": Shape("D", "H", "W"), "lower": Shape(3), "upper": Shape(3)}
     arrays = read_arrays(path, FORMAT, VERSION, shapes, MOST_VOXELS)
     try:
-        return VoxelGrid(**arrays)
+        return VoxelGrid(arrays["density"], arrays["lower"], arrays["upper"])
     except (TypeError, ValueError) as refusal:
         raise ValueError(f"{os.fspath(path)}: {refusal}") from None

@@ -109,29 +109,31 @@ def generate(
     voxel = default_voxel if voxel is None else voxel
     cell = default_cell if cell is None else cell
     watch = observe or (lambda name, value: None)
-    noise_of = dict(
+    # 1. Lay the grid over the ellipsoids' bounds, on whole multiples of the cell.
+    centers = radii = np.zeros((0, 3))
+    quadrics: list[Array] = []
+    if shape == "cumulus":
+        centers, radii = cumulus_ellipsoids(diameters, seed=seed or 0)
+        room = relief + edge
+        lower, upper = (centers - radii).min(axis=0), (centers + radii).max(axis=0)
+        lower, upper = lower - room, upper + room
+        lower[1] = -1.0  # the base is flat: nothing lies below -n / 2
+    else:
+        quadrics, lower, upper = _ellipsoid_volumes(diameters, ellipsoids, seed or 0)
+    (x, y, z), origin = _lattice(lower, upper, voxel)
+
+    # 2. Noise on the grid (eq 1), with octaves finer than the cells left out.
+    noise, skipped = octave_sum_grid(
+        x / cell,
+        y / cell,
+        z / cell,
         seed=seed,
         octaves=octaves,
         persistence=persistence,
         interpolant=interpolant,
         normalize=normalize,
+        absolute=False,
         finest=0.5 * voxel / cell,
-    )
-
-    # 1. Lay the grid over the ellipsoids' bounds, on whole multiples of the cell.
-    if shape == "cumulus":
-        centers, radii = cumulus_ellipsoids(diameters, seed=seed or 0)
-        lower, upper = (centers - radii).min(axis=0), (centers + radii).max(axis=0)
-        lower, upper = lower - relief - edge, upper + relief + edge
-        lower[1] = -1.0  # the base is flat: nothing lies below -n / 2
-    else:
-        quadrics, lower, upper = _ellipsoid_volumes(diameters, ellipsoids, seed or 0)
-    lines, origin = _lattice(lower, upper, voxel)
-    x, y, z = lines
-
-    # 2. Noise on the grid (eq 1), with octaves finer than the cells left out.
-    noise, skipped = octave_sum_grid(
-        x / cell, y / cell, z / cell, absolute=False, **noise_of
     )
     watch("noise", noise)
 

@@ -43,27 +43,48 @@ def trilinear(grid: VoxelGrid, points: Annotated[Array, Shape("...", 3)]) -> Arr
 
 
 def clamped_trilinear(values: Array, x: Array, y: Array, z: Array) -> Array:
-    """Sample ``values[z, y, x]`` at cell coordinates, unchecked, clamped everywhere.
+    """Sample a table at cell coordinates, unchecked, clamped everywhere.
 
-    Cell i has its centre at coordinate i. The arrays are flattened once, so that each
-    corner costs one gather.
+    Parameters
+    ----------
+    values
+        Shape (D, H, W) as ``[z, y, x]``, or (D, H, W, C). Cell i has its centre at
+        coordinate i.
+    x, y, z
+        Coordinates in cells; they broadcast to one shape (...,).
+
+    Returns
+    -------
+    Shape (...,), or (..., C); a new array.
     """
-    flat = values.ravel()
+    x, y, z = np.broadcast_arrays(x, y, z)
+    D, H, W = values.shape[:3]
+    # The table is read as one row of cells, so that each corner costs one gather.
+    flat = values.reshape(-1, *values.shape[3:])
     places, fractions = [], []
-    for coordinate, n in zip((x, y, z), values.shape[::-1], strict=True):
-        c = np.minimum(np.maximum(coordinate, 0.0), n - 1.0)
-        cell = np.minimum(c.astype(np.intp), max(n - 2, 0))
+    for coordinate, n in ((x, W), (y, H), (z, D)):
+        c = np.maximum(coordinate, 0.0)
+        np.minimum(c, n - 1.0, out=c)
+        cell = c.astype(np.intp)
+        np.minimum(cell, max(n - 2, 0), out=cell)
+        c -= cell
         places.append(cell)
-        fractions.append(c - cell)
-    D, H, W = values.shape
+        fractions.append(c[..., None] if values.ndim == 4 else c)
     (i, j, k), (u, v, w) = places, fractions
     step_x, step_y, step_z = int(W > 1), W * int(H > 1), W * H * int(D > 1)
     first = (k * H + j) * W + i
     # Along x on four edges, then y, then z: seven linear steps.
     edges = []
     for offset in (0, step_y, step_z, step_y + step_z):
-        a = flat.take(first + offset)
-        edges.append(a + u * (flat.take(first + (offset + step_x)) - a))
-    near = edges[0] + v * (edges[1] - edges[0])
-    far = edges[2] + v * (edges[3] - edges[2])
-    return near + w * (far - near)
+        edge = first + offset if offset else first
+        near = flat.take(edge, axis=0)
+        far = flat.take(edge + step_x, axis=0)
+        far -= near
+        far *= u
+        far += near
+        edges.append(far)
+    for a, b, t in ((0, 1, v), (2, 3, v), (0, 2, w)):
+        edges[b] -= edges[a]
+        edges[b] *= t
+        edges[a] += edges[b]
+    return edges[0]

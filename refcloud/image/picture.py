@@ -36,12 +36,15 @@ class Picture:
         What the stages left out.
     seconds
         Time of each stage by its name.
+    notes
+        What was chosen on the caller's behalf, a line each.
     """
 
     linear: Annotated[Array, Shape("H", "W", 3)]
     alpha: Annotated[Array, Shape("H", "W"), Range(0.0, 1.0)] | None = None
     skipped: tuple[Skipped, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_fields(self)

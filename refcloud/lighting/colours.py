@@ -37,8 +37,8 @@ class Haze:
 def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     """Give the radiance that each ball would show if nothing came through it.
 
-    Formula: ambient + sum over suns of albedo phase(cos_theta) light; in the paper's
-    rule each sun's term is g* / (1 - T) with g* = albedo tau phase Omega I / (4 pi)
+    Formula: for each sun albedo phase(cos_theta) light, and the ambient light; in the
+    paper's rule a sun's term is g* / (1 - T), g* = albedo tau phase Omega I / (4 pi)
 
     Parameters
     ----------
@@ -49,18 +49,21 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
 
     Returns
     -------
-    Shape (N, 3), radiance, at least 0. A splat adds this times its opacity.
+    Shape (N, S + 1, 3), radiance, at least 0: by sun, and the ambient light last. A
+    splat adds their sum times its opacity.
 
     Source: paper M, eq 26 and 29; E20, E22, E23, E26.
     """
     balls, medium = lit.balls, lit.medium
-    gain = _gain(lit)
-    colours = np.array(lit.ambient)
+    colours = np.empty((len(balls.radii), len(lit.suns) + 1, 3))
     toward_eye = _toward_eye(balls.centers, camera)
-    for sun, light in zip(lit.suns, lit.light, strict=True):
+    gain = _gain(lit)
+    for s, sun in enumerate(lit.suns):
         # The sun's light travels along -direction and leaves toward the eye.
         cos_theta = np.clip(-(toward_eye @ sun.direction), -1.0, 1.0)
-        colours += medium.albedo * phase(medium, cos_theta)[:, None] * light * gain
+        scattered = phase(medium, cos_theta)[:, None] * medium.albedo_rgb
+        colours[:, s] = scattered * lit.light[s] * gain
+    colours[:, -1] = lit.ambient
     return colours
 
 
@@ -71,8 +74,8 @@ def _gain(lit: LitMetaballs) -> Array:
         return np.ones(3)
     gain = np.empty((len(lit.balls.radii), 3))
     for channel in range(3):
-        albedo = float(lit.medium.albedo[channel])
-        tau = ball_depths(lit.balls, float(lit.medium.sigma_t[channel]), look)
+        albedo = float(lit.medium.albedo_rgb[channel])
+        tau = ball_depths(lit.balls, float(lit.medium.sigma_t_rgb[channel]), look)
         kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
         # Depth as eq 26 counts it, held where pass 1 holds it, over the opacity.
         held = handed_on(look, albedo, 0.0)(tau)

@@ -16,11 +16,11 @@ from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
 from refcloud.noise import octave_sum_grid
 
-OCTAVES = 5
+OCTAVES = 4
 PERSISTENCE = 0.6
 NEARLY_ALL = 0.62  # about the 97 % point of |eq 1| for these octaves, before clipping
 SAMPLES = 2.0  # of the finest octave's cell
-MOST_CELLS = 1 << 22  # 32 MiB of float64; a wider cloud gets a coarser table
+MOST_CELLS = 1 << 23  # 64 MiB of float64; a wider cloud gets a coarser table
 SOFT = 0.3  # width over which the cut-back footprint rises
 
 
@@ -30,11 +30,12 @@ def detail_grid(
     upper: Annotated[Array, Shape(3)],
     *,
     cell: Annotated[float, Positive],
+    pixel: Annotated[float, Range(0.0, unit="scene units")] = 0.0,
     seed: Seed = 0,
 ) -> VoxelGrid:
     """Tabulate the noise that erodes footprints, over a box of the world.
 
-    Formula: min(|sum of 5 octaves| / 0.62, 1) at cell centres on whole multiples of the
+    Formula: min(|sum of 4 octaves| / 0.62, 1) at cell centres on whole multiples of the
     spacing, so that two boxes agree where they overlap
 
     Parameters
@@ -43,6 +44,9 @@ def detail_grid(
         Corners of the box, shape (3,), scene units.
     cell
         Coarsest cell of the noise, scene units, above 0.
+    pixel
+        What one pixel covers of the nearest place, scene units: octaves with cells
+        below that cannot be displayed and are left out; 0 keeps all.
     seed
         Chooses the noise.
 
@@ -54,6 +58,8 @@ def detail_grid(
     Source: look.md, section 1 (eroded footprint), anchored in the world.
     """
     spacing = cell / 2 ** (OCTAVES - 1) / SAMPLES
+    while SAMPLES * spacing < pixel:
+        spacing *= 2.0
     while np.prod(np.ceil((upper - lower) / spacing) + 2.0) > MOST_CELLS:
         spacing *= 2.0
     first = np.floor(lower / spacing)
@@ -135,3 +141,54 @@ def eroded_of(weight: Array, noise: Array, erosion: float) -> Array:
     kept *= 1.0 + SOFT
     kept /= (1.0 + SOFT) - low
     return kept
+
+
+@checked
+def lit_share(
+    noise: Annotated[Array, Range(0.0, 1.0)],
+    ahead: Annotated[Array, Range(0.0, 1.0)],
+    *,
+    relief: Annotated[float, Range(0.0, 1.0)],
+) -> Array:
+    """Give the share of a sun's light that the detail lets reach a place.
+
+    Formula: 1 - relief (1 + n_ahead - n) / 2, in [1 - relief, 1]
+
+    Parameters
+    ----------
+    noise, ahead
+        Of `detail_grid`, at the place and a step toward the sun, one shape, in [0, 1].
+    relief
+        Largest share kept back, in [0, 1].
+
+    Returns
+    -------
+    The same shape; it only takes light.
+
+    Source: look.md, section 1 (emboss), made to keep the laws.
+
+    Examples
+    --------
+    >>> lit_share([0.0, 1.0], [1.0, 0.0], relief=0.5)
+    array([0.5, 1. ])
+    """
+    return lit_share_of(noise, ahead, relief)
+
+
+def lit_share_of(noise: Array, ahead: Array, relief: float) -> Array:
+    """Give the share without a check: the inner form of `lit_share`.
+
+    Parameters
+    ----------
+    noise, ahead, relief
+        As `lit_share`.
+
+    Returns
+    -------
+    As `lit_share`, a new array.
+    """
+    share = ahead - noise
+    share += 1.0
+    share *= -0.5 * relief
+    share += 1.0
+    return share

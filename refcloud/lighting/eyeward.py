@@ -17,12 +17,13 @@ from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Seed, Shape, Skipped, Tolerance
 from refcloud.lighting.colours import Haze, ball_colours, clearness
 from refcloud.lighting.erosion import detail_grid
+from refcloud.lighting.lightfield import light_field
 from refcloud.lighting.order import depth_order
-from refcloud.lighting.shading import Shading, draw_ball
-from refcloud.lighting.smoothing import blended_colours, colour_blend
+from refcloud.lighting.shading import Ball, Shading, draw_ball
 from refcloud.lighting.sunward import LitMetaballs, ball_depths
 
 Observer = Callable[[str, Any], None]
+RISE = 0.25  # of the noise's coarsest cell: the step toward a sun that shows its relief
 
 
 @checked
@@ -82,73 +83,77 @@ def eyeward(
     balls, look = lit.balls, lit.look
     x, y, depth, scale = project(camera, balls.centers)
     radius = balls.radii * scale
-    colours = ball_colours(lit, camera)
 
     # 2. Leave out what cannot show.
     visible, skipped = _on_screen(x, y, radius, camera)
     dark = sum(1 for sun in lit.suns if not sun.irradiance.any())
     if dark:
-        row = Skipped("light", "suns without light", dark, len(lit.suns))
-        skipped.append(row)
-    # A ball fades in as the eye leaves it, so that none pops at the near plane.
-    nearness = np.clip(depth / balls.radii, 0.0, 1.0)
-    fade = nearness * nearness * (3.0 - 2.0 * nearness) * look.erosion_depth
-    tau = np.stack(
-        [ball_depths(balls, float(s), look) * fade for s in lit.medium.sigma_t]
-    )
-    brightest = max(colours.max(initial=0.0), pixels.max(initial=0.0))
+        skipped.append(Skipped("light", "suns without light", dark, len(lit.suns)))
+    sigma_ts = lit.medium.sigma_t_rgb
+    tau = np.stack([_eye_depths(lit, float(s), depth) for s in sigma_ts])
+    colours = ball_colours(lit, camera)
+    brightest = max(colours.sum(axis=1).max(initial=0.0), pixels.max(initial=0.0))
     if haze is not None:
         brightest = max(brightest, float(haze.color.max()))
-    visible, row = _without_faint(visible, tau.max(axis=0), brightest, tolerance)
-    skipped += row
+    visible, faint = _without_faint(visible, tau.max(axis=0), brightest, tolerance)
+    skipped += faint
 
-    # 3. Colours at the centres, and how they change over each ball.
-    share = clearness(haze, balls.centers, camera)[:, None]
-    haze_color = np.zeros(3) if haze is None else haze.color
-    if look.neighbours and len(colours):
-        blend = colour_blend(balls, neighbours=look.neighbours)
-        colours, change = blended_colours(blend, colours)
-    else:
-        change = np.zeros((len(colours), 3, 3))
-    colours = colours * share + haze_color * (1.0 - share)
-    frame = axes(camera)
-    change = np.einsum("fa,nac->nfc", frame, change * share[:, :, None])
-
-    # 4. The noise that erodes footprints, over the visible balls only.
-    detail = None
+    # 3. Light as a field, and the noise that erodes footprints.
+    field = detail = None
+    if look.light_reach > 0.0 and visible.any():
+        values = colours.reshape(len(colours), -1)
+        field = light_field(balls, values, reach=look.light_reach)
+    middling = float(np.median(balls.radii)) if len(balls.radii) else 1.0
+    cell = look.erosion_cell * middling
     if look.erosion > 0.0 and visible.any():
-        seen = balls.centers[visible], balls.radii[visible][:, None]
-        lower, upper = (seen[0] - seen[1]).min(axis=0), (seen[0] + seen[1]).max(axis=0)
-        cell = look.erosion_cell * float(np.median(balls.radii))
-        detail = detail_grid(lower, upper, cell=cell, seed=seed)
+        places, reach = balls.centers[visible], balls.radii[visible][:, None]
+        lower, upper = (places - reach).min(axis=0), (places + reach).max(axis=0)
+        pixel = 1.0 / float(scale[visible].max())
+        detail = detail_grid(lower, upper, cell=cell, pixel=pixel, seed=seed)
         skipped += detail.skipped
         watch("detail", detail)
+    toward = np.array([sun.direction for sun in lit.suns]).reshape(-1, 3)
+    shading = Shading(
+        axes(camera), look, balls.kernel, detail, field, toward * (RISE * cell)
+    )
+    clear = clearness(haze, balls.centers, camera)
+    air = np.zeros(3) if haze is None else haze.color
 
-    # 5. Far to near: draw. A grey medium needs one pass, a coloured one three (L12).
+    # 4. Far to near: draw. A grey medium needs one pass, a coloured one three (L12).
     order = depth_order(balls, depth)[::-1]
     order = order[visible[order]]
     watch("eye order", order)
-    shading = Shading(frame, look, balls.kernel, detail)
-    result = np.array(pixels)
-    alphas = []
-    for sigma_t in dict.fromkeys(lit.medium.sigma_t.tolist()):
-        channels = np.flatnonzero(lit.medium.sigma_t == sigma_t)
+    result, alphas = np.array(pixels), []
+    for sigma_t in dict.fromkeys(sigma_ts.tolist()):
+        channels = np.flatnonzero(sigma_ts == sigma_t)
         part = np.array(pixels)
         for k in order:
-            draw_ball(
-                part,
-                shading,
-                (float(x[k]), float(y[k]), float(radius[k])),
+            ball = Ball(
+                float(x[k]),
+                float(y[k]),
+                float(radius[k]),
                 float(tau[channels[0], k]),
                 balls.centers[k],
                 float(balls.radii[k]),
                 colours[k],
-                change[k],
+                float(clear[k]),
+                air * (1.0 - clear[k]),
             )
+            draw_ball(part, shading, ball)
         result[..., channels] = part[..., channels]
-        alphas += [part[..., 3]] * len(channels)
-    result[..., 3] = alphas[0] if len(set(map(id, alphas))) == 1 else np.mean(alphas, 0)
+        alphas += [part[..., 3]] * (len(channels) if len(channels) < 3 else 1)
+    result[..., 3] = np.mean(alphas, axis=0) if len(alphas) > 1 else alphas[0]
     return result, tuple(skipped)
+
+
+def _eye_depths(lit: LitMetaballs, sigma_t: float, depth: Array) -> Array:
+    """Give optical depths as the eye counts them.
+
+    A ball fades in as the eye leaves it, so that none pops at the near plane.
+    """
+    nearness = np.clip(depth / lit.balls.radii, 0.0, 1.0)
+    fade = nearness * nearness * (3.0 - 2.0 * nearness)
+    return ball_depths(lit.balls, sigma_t, lit.look) * fade * lit.look.erosion_depth
 
 
 def _on_screen(

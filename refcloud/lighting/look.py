@@ -52,14 +52,18 @@ class Look:
         like a sun's light. Both zero is off.
     sky_forward
         k for these two.
-    neighbours
-        Balls over which the colour varies linearly; 0 gives each ball one flat colour.
+    light_reach
+        How far a ball's light counts in the field that gives pixels their colours, in
+        radii; 0 gives each ball one flat colour.
     erosion
         Share of a footprint that world-anchored noise may take away; 0 is off.
     erosion_cell
         Coarsest cell of that noise, in median radii of the balls.
     erosion_depth
         Factor on the eye's optical depth that makes up for what erosion takes.
+    relief
+        Share of a sun's light that the noise may keep from a point by rising toward
+        that sun; 0 is off.
     buffer
         Side of the sun's framebuffer, pixels.
     sky_buffer
@@ -77,10 +81,11 @@ class Look:
     sky_light: Colour = field(default_factory=lambda: SKY_LIGHT)
     ground_light: Colour = field(default_factory=lambda: GROUND_LIGHT)
     sky_forward: Share = 0.8
-    neighbours: Annotated[int, Range(0, 64)] = 12
-    erosion: Annotated[float, Range(0.0, 1.0, open_upper=True)] = 0.32
-    erosion_cell: Annotated[float, Range(0.0, open_lower=True)] = 2.6
-    erosion_depth: Annotated[float, Range(0.0, 100.0)] = 1.4
+    light_reach: Annotated[float, Range(0.0, 10.0, "radii")] = 1.15
+    erosion: Annotated[float, Range(0.0, 1.0, open_upper=True)] = 0.5
+    erosion_cell: Annotated[float, Range(0.01, 100.0, "median radii")] = 0.62
+    erosion_depth: Annotated[float, Range(0.0, 100.0)] = 1.7
+    relief: Share = 0.57
     buffer: Side = 256
     sky_buffer: Side = 128
 
@@ -120,7 +125,8 @@ MAN = Look(
     tau=TAU_MAN2003,
     sky_light=_dark(),
     ground_light=_dark(),
-    neighbours=0,
+    light_reach=0.0,
     erosion=0.0,
     erosion_depth=1.0,
+    relief=0.0,
 )

@@ -9,12 +9,14 @@ import numpy as np
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.cloudmap.sample import clamped_trilinear
 from refcloud.conventions import Array
-from refcloud.lighting.erosion import eroded_of
+from refcloud.lighting.erosion import eroded_of, lit_share_of
+from refcloud.lighting.lightfield import LightField, field_value_of
 from refcloud.lighting.look import Look
+from refcloud.metaballs.kernels import Kernel
 from refcloud.raster.blending import blend_patch
-from refcloud.raster.footprint import footprint_of, opacity_of, patch_of
+from refcloud.raster.footprint import Patch, footprint_of, opacity_of, patch_of
 
-# The colour of a pixel is that of the ball half way to its front surface.
+# A pixel shows the place half way from the ball's middle plane to its front surface.
 FRONT = 0.5
 
 
@@ -32,24 +34,53 @@ class Shading:
         The balls' density.
     detail
         Noise that erodes footprints; None for none.
+    field
+        The balls' colours as a field, 3 (S + 1) values; None for flat colours.
+    toward
+        Steps toward the suns over which the noise's rise is taken, scene units, shape
+        (S, 3).
     """
 
     frame: Array
     look: Look
-    kernel: str
+    kernel: Kernel
     detail: VoxelGrid | None
+    field: LightField | None
+    toward: Array
 
 
-def draw_ball(
-    pixels: Array,
-    shading: Shading,
-    place: tuple[float, float, float],
-    tau: float,
-    center: Array,
-    R: float,
-    color: Array,
-    change: Array,
-) -> None:
+@dataclass(frozen=True)
+class Ball:
+    """One ball as the camera sees it.
+
+    Attributes
+    ----------
+    x, y, radius
+        In the picture, pixels.
+    tau
+        Optical depth on its axis.
+    center, R
+        In the world, shape (3,) and scene units.
+    colours
+        RGB by sun and ambient, shape (S + 1, 3).
+    clear
+        Share of its light that passes the air.
+    haze
+        What the air adds, RGB, shape (3,).
+    """
+
+    x: float
+    y: float
+    radius: float
+    tau: float
+    center: Array
+    R: float
+    colours: Array
+    clear: float
+    haze: Array
+
+
+def draw_ball(pixels: Array, shading: Shading, ball: Ball) -> None:
     """Blend one ball into the framebuffer, unchecked.
 
     Parameters
@@ -58,72 +89,74 @@ def draw_ball(
         The framebuffer, RGBA, shape (H, W, 4), written in place.
     shading
         What all balls share.
-    place
-        x, y and radius, pixels.
-    tau
-        Optical depth on the ball's axis.
-    center, R
-        In the world, shape (3,) and scene units.
-    color
-        RGB at the centre, shape (3,).
-    change
-        Of the color, per radius along right, up and back, shape (3, 3).
+    ball
+        The ball.
     """
-    x, y, radius = place
     height, width = pixels.shape[:2]
-    patch = patch_of(x, y, radius, width, height)
+    patch = patch_of(ball.x, ball.y, ball.radius, width, height)
     if patch is None:
         return
-    look = shading.look
+    look, detail = shading.look, shading.detail
     weight = footprint_of(patch.q, shading.kernel, look.footprint)
+    points = noise = None
+    if detail is not None or shading.field is not None:
+        points = _places(patch, shading, ball)
 
-    # 1. Offsets from the centre in radii: to the right, upward, toward the eye.
-    rows, columns = patch.rows, patch.columns
-    right = (np.arange(columns.start, columns.stop) + (0.5 - x)) / radius
-    up = (y - 0.5 - np.arange(rows.start, rows.stop))[:, None] / radius
-    varies = bool(change.any())
-    front = None
-    if varies or shading.detail is not None:
-        front = np.maximum(1.0 - patch.q, 0.0)
-        np.sqrt(front, out=front)
-        front *= FRONT
-
-    # 2. Cut the footprint back by the noise at that place in the world.
-    if shading.detail is not None and front is not None:
-        noise = _noise_at(shading, shading.detail, center, R, right, up, front)
+    # 1. Cut the footprint back by the noise at that place in the world.
+    if detail is not None and points is not None:
+        noise = _noise_at(detail, points, np.zeros(3))
         weight = eroded_of(weight, noise, look.erosion)
+
+    # 2. The light there, by sun: of the ball itself, or of the field; shaded by noise
+    #    that rises toward the sun.
+    light = ball.colours
+    if shading.field is not None and points is not None:
+        nodes = [
+            (p - low) / shading.field.spacing
+            for p, low in zip(points, shading.field.lower, strict=True)
+        ]
+        own = ball.colours.ravel()
+        light = field_value_of(shading.field, nodes[0], nodes[1], nodes[2], own)
+        light = light.reshape(*weight.shape, -1, 3)
+    color = light[..., -1, :]
+    for s, step in enumerate(shading.toward):
+        sunlit = light[..., s, :]
+        if noise is not None and detail is not None and points is not None:
+            if look.relief > 0.0:
+                ahead = _noise_at(detail, points, step)
+                sunlit = sunlit * lit_share_of(noise, ahead, look.relief)[..., None]
+        color = color + sunlit
+    color = color * ball.clear + ball.haze
 
     # 3. Opacity, and the colour it adds; the rest shines through.
     source = np.empty((*weight.shape, 4))
-    opacity = opacity_of(weight, tau, look.transmittance)
+    opacity = opacity_of(weight, ball.tau, look.transmittance)
     source[..., 3] = opacity
-    for channel in range(3):
-        if varies and front is not None:
-            by_right, by_up, by_back = change[:, channel]
-            shade = front * by_back
-            shade += color[channel] + by_right * right
-            shade += by_up * up
-            np.multiply(shade, opacity, out=source[..., channel])
-        else:
-            np.multiply(opacity, color[channel], out=source[..., channel])
-    blend_patch(pixels[rows, columns], source)
+    np.multiply(color, opacity[..., None], out=source[..., :3])
+    blend_patch(pixels[patch.rows, patch.columns], source)
 
 
-def _noise_at(
-    shading: Shading,
-    detail: VoxelGrid,
-    center: Array,
-    R: float,
-    right: Array,
-    up: Array,
-    front: Array,
-) -> Array:
-    """Sample the detail noise at the pixels' places on the ball."""
+def _places(patch: Patch, shading: Shading, ball: Ball) -> list[Array]:
+    """Give x, y and z of the places in the world that the ball's pixels show."""
+    rows, columns = patch.rows, patch.columns
+    right = (np.arange(columns.start, columns.stop) + (0.5 - ball.x)) / ball.radius
+    up = (ball.y - 0.5 - np.arange(rows.start, rows.stop))[:, None] / ball.radius
+    back = np.maximum(1.0 - patch.q, 0.0)
+    np.sqrt(back, out=back)
+    back *= FRONT
+    per_right, per_up, per_back = shading.frame * ball.R
+    places = []
+    for a in range(3):
+        place = per_back[a] * back
+        place += per_up[a] * up
+        place += ball.center[a] + per_right[a] * right
+        places.append(place)
+    return places
+
+
+def _noise_at(detail: VoxelGrid, points: list[Array], step: Array) -> Array:
+    """Sample the detail noise at points moved by a step."""
     size = cell_size(detail)
-    start = (center - detail.lower) / size - 0.5
-    per_right, per_up, per_back = shading.frame * (R / size)
-    x, y, z = (
-        (start[a] + per_right[a] * right) + per_up[a] * up + per_back[a] * front
-        for a in range(3)
-    )
+    offset = (step - detail.lower) / size - 0.5
+    x, y, z = (p / s + o for p, s, o in zip(points, size, offset, strict=True))
     return clamped_trilinear(detail.density, x, y, z)

@@ -173,14 +173,15 @@ def light_share(
     """
     share = np.empty((len(balls.radii), 3))
     done: dict[tuple[float, float], int] = {}
-    for channel, key in enumerate(zip(medium.sigma_t, medium.albedo, strict=True)):
+    keys = zip(medium.sigma_t_rgb.tolist(), medium.albedo_rgb.tolist(), strict=True)
+    for channel, key in enumerate(keys):
         if key in done:  # a grey medium is carried once
             share[:, channel] = share[:, done[key]]
             continue
         done[key] = channel
-        tau = ball_depths(balls, float(key[0]), look)
+        tau = ball_depths(balls, key[0], look)
         share[:, channel] = _carry(
-            balls, direction, tau, float(key[1]), look, forward, side, watch
+            balls, direction, tau, key[1], look, forward, side, watch
         )
     return share
 

@@ -44,9 +44,9 @@ class Medium:
     Attributes
     ----------
     sigma_t
-        Extinction at density 1, number or RGB, 1 / scene unit; kept as shape (3,).
+        Extinction at density 1, number or RGB, 1 / scene unit.
     albedo
-        Scattered share of extinction, number or RGB in [0, 1]; kept as shape (3,).
+        Scattered share of extinction, number or RGB, in [0, 1].
     g
         Mean cosine of the Henyey-Greenstein phase function, in (-1, 1).
     phase
@@ -63,7 +63,13 @@ class Medium:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        for name in ("sigma_t", "albedo"):
-            rgb = np.array(np.broadcast_to(getattr(self, name), (3,)))
-            rgb.flags.writeable = False
-            object.__setattr__(self, name, rgb)
+
+    @property
+    def sigma_t_rgb(self) -> Array:
+        """Extinction by channel, shape (3,), 1 / scene unit."""
+        return np.broadcast_to(self.sigma_t, (3,))
+
+    @property
+    def albedo_rgb(self) -> Array:
+        """Scattered share of extinction by channel, shape (3,)."""
+        return np.broadcast_to(self.albedo, (3,))
