@@ -133,7 +133,7 @@ def generate(
         interpolant=interpolant,
         normalize=normalize,
         absolute=False,
-        finest=0.5 * voxel / cell,
+        finest=voxel / cell,
     )
     watch("noise", noise)
 

@@ -19,7 +19,7 @@ from refcloud.noise import octave_sum_grid
 OCTAVES = 4
 PERSISTENCE = 0.6
 NEARLY_ALL = 0.62  # about the 97 % point of |eq 1| for these octaves, before clipping
-SAMPLES = 2.0  # of the finest octave's cell
+SAMPLES = 2.0  # per cell of the finest octave: its bumps must show, not only exist
 MOST_CELLS = 1 << 23  # 64 MiB of float64; a wider cloud gets a coarser table
 SOFT = 0.3  # width over which the cut-back footprint rises
 
@@ -76,7 +76,7 @@ def detail_grid(
         octaves=OCTAVES,
         persistence=PERSISTENCE,
         normalize="none",
-        finest=0.5 * spacing / cell,
+        finest=spacing / cell,
     )
     rows = tuple(
         Skipped("erosion", row.what, row.skipped, row.of, row.bound / NEARLY_ALL)

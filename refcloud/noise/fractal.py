@@ -157,7 +157,7 @@ def octave_sum_grid(
 ) -> tuple[Array, tuple[Skipped, ...]]:
     """Give the paper's fractal noise on a grid, without octaves too fine to be seen.
 
-    Formula: |sum of s^i h(2^i p) for i < Z with 2^-i >= 2 finest|
+    Formula: |sum of s^i h(2^i p) for i < Z with 2^-i >= finest|
 
     Parameters
     ----------
@@ -177,8 +177,9 @@ def octave_sum_grid(
     absolute
         Whether the sum's absolute value is taken, as the paper does.
     finest
-        Spacing of the samples, in cells of the first octave. An octave with fewer than
-        two samples per cell cannot be shown and is skipped; None skips nothing.
+        Spacing of the samples, in cells of the first octave. Lattice noise repeats in no
+        less than two cells, so an octave with less than one sample per cell cannot be
+        shown and is skipped; None skips nothing.
 
     Returns
     -------
@@ -189,13 +190,13 @@ def octave_sum_grid(
 
     Examples
     --------
-    >>> noise, skipped = octave_sum_grid([0.0, 0.25], [0.0], [0.0], finest=0.25)
+    >>> noise, skipped = octave_sum_grid([0.0, 0.5], [0.0], [0.0], finest=0.5)
     >>> print(skipped[0])
-    noise: 2 of 4 octaves with under two samples per cell skipped, error at most 0.38
+    noise: 2 of 4 octaves with under a sample per cell skipped, error at most 0.38
     """
     peak = PEAKS[interpolant] ** 3
     bound = octave_bound(octaves, persistence) * peak
-    kept = [i for i in range(octaves) if finest is None or 2.0**-i >= 2.0 * finest]
+    kept = [i for i in range(octaves) if finest is None or 2.0**-i >= finest]
     total: Array = np.zeros((z.size, y.size, x.size))
     for i in kept:
         own, shift = octave_frame(i, seed=seed)
@@ -207,7 +208,7 @@ def octave_sum_grid(
     lost = peak * math.fsum(persistence**i for i in range(len(kept), octaves))
     row = Skipped(
         "noise",
-        "octaves with under two samples per cell",
+        "octaves with under a sample per cell",
         octaves - len(kept),
         octaves,
         lost / bound if normalize == "bound" else lost,

@@ -239,7 +239,7 @@ def octave_sum_grid(
     finest: float | None = None,
     **how,
 ) -> list[list[list[float]]]:
-    """Give `octave_sum` on a grid, of octaves with two samples per cell or more."""
-    shown = sum(finest is None or 2.0**-i >= 2.0 * finest for i in range(octaves))
+    """Give `octave_sum` on a grid, of octaves with a sample per cell or more."""
+    shown = sum(finest is None or 2.0**-i >= finest for i in range(octaves))
     how |= {"octaves": octaves, "shown": shown}
     return [[[octave_sum((a, b, c), **how) for a in x] for b in y] for c in z]
