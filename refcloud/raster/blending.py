@@ -130,8 +130,6 @@ def blend(
         expected = f"shape {(*box, 4)}, that of the box"
         raise ValueError(complaint("source", expected, f"shape {source.shape}"))
     destination = buffer.pixels[rows, columns]
-    if np.may_share_memory(source, destination):
-        source = source.copy()  # a part of the buffer blended onto another part
     blend_patch(destination, source, src_factor, dst_factor, equation, constant)
 
 
@@ -150,7 +148,8 @@ def blend_patch(
     destination
         A view of the framebuffer, shape (h, w, 4), written in place.
     source
-        RGBA of the same shape, in other memory.
+        RGBA of the same shape; it may be another part of the same framebuffer, since
+        all is read before anything is written.
     src_factor, dst_factor, equation, constant
         As `blend`.
     """

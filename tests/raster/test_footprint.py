@@ -15,7 +15,8 @@ from refcloud.raster.footprint import opacity_of
 
 PLACE = st.floats(-40.0, 60.0)
 SIZE = st.integers(1, 24)
-RADIUS = st.floats(-2, 8).map(lambda power: 10.0**power)  # 0.01 to 1e8 pixels
+# 0.01 to 1e8 pixels, and often of the buffer's own size.
+RADIUS = st.floats(0.4, 12.0) | st.floats(-2, 8).map(lambda power: 10.0**power)
 WEIGHT = arrays(np.float64, 7, elements=st.floats(0.0, 1.0))
 KERNEL = st.sampled_from(["wyvill", "gaussian"])
 NAME = st.sampled_from(["chord", "profile"])

@@ -22,7 +22,8 @@ from refcloud.raster import (
 
 PLACE = st.floats(-12.0, 24.0)
 SIZE = st.integers(1, 12)
-RADIUS = st.floats(-2, 8).map(lambda power: 10.0**power)
+# 0.01 to 1e8 pixels, and often of the buffer's own size.
+RADIUS = st.floats(0.4, 12.0) | st.floats(-2, 8).map(lambda power: 10.0**power)
 KERNEL = st.sampled_from(["wyvill", "gaussian"])
 NAME = st.sampled_from(["chord", "profile"])
 LAW = st.sampled_from(["beer", "linear"])
@@ -87,6 +88,21 @@ def test_a_thin_splat_glows_as_its_footprint(x, y, radius, emission, name, law) 
     for other in results[1:]:
         # At depth tau the glow differs by tau / 2 at most, and by rounding.
         np.testing.assert_allclose(other, results[0], rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize("tau", [1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.1])
+def test_a_thin_splat_keeps_its_digits(tau) -> None:
+    buffer = framebuffer(9, 9)
+    splat(buffer, 4.5, 4.5, 4, emission=[1, 1, 1], tau=tau)
+    found = patch(4.5, 4.5, 4, 9, 9)
+    assert found is not None
+    weight = footprint(found.q)
+    for row, column in np.ndindex(weight.shape):
+        # expm1 of the C library keeps all digits of 1 - T.
+        opacity = -math.expm1(-tau * float(weight[row, column]))
+        pixel = buffer.pixels[row + found.rows.start, column + found.columns.start]
+        assert pixel[3] == pytest.approx(opacity, rel=1e-15, abs=0)
+        assert pixel[0] == pytest.approx(opacity / -math.expm1(-tau), rel=1e-15, abs=0)
 
 
 @given(
