@@ -298,8 +298,21 @@ def draw_layers(
         )
         skipped += rows
         clock.stop("eye")
+    skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds)
+
+
+def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
+    """Add up the rows of several layers that say the same; errors add up at most."""
+    sums: dict[tuple[str, str], Skipped] = {}
+    for row in rows:
+        key = row.stage, row.what
+        old = sums.get(key, Skipped(*key, 0, 0))
+        sums[key] = Skipped(
+            *key, old.skipped + row.skipped, old.of + row.of, old.bound + row.bound
+        )
+    return tuple(sums.values())
 
 
 class _Clock:

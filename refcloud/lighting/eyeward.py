@@ -123,10 +123,9 @@ def eyeward(
     order = depth_order(balls, depth)[::-1]
     order = order[visible[order]]
     watch("eye order", order)
-    result, alphas = np.array(pixels), []
-    for sigma_t in dict.fromkeys(sigma_ts.tolist()):
-        channels = np.flatnonzero(sigma_ts == sigma_t)
-        part = np.array(pixels)
+    groups = [np.flatnonzero(sigma_ts == s) for s in dict.fromkeys(sigma_ts.tolist())]
+    parts = [pixels, *(pixels.copy() for _ in groups[1:])]
+    for channels, part in zip(groups, parts, strict=True):
         for k in order:
             ball = Ball(
                 float(x[k]),
@@ -140,10 +139,14 @@ def eyeward(
                 air * (1.0 - clear[k]),
             )
             draw_ball(part, shading, ball)
-        result[..., channels] = part[..., channels]
-        alphas += [part[..., 3]] * (len(channels) if len(channels) < 3 else 1)
-    result[..., 3] = np.mean(alphas, axis=0) if len(alphas) > 1 else alphas[0]
-    return result, tuple(skipped)
+    if len(groups) > 1:
+        alpha = sum(
+            len(c) * part[..., 3] for c, part in zip(groups, parts, strict=True)
+        )
+        for channels, part in zip(groups, parts, strict=True):
+            pixels[..., channels] = part[..., channels]
+        pixels[..., 3] = alpha / 3.0
+    return pixels, tuple(skipped)
 
 
 def _eye_depths(lit: LitMetaballs, sigma_t: float, depth: Array) -> Array:
