@@ -23,8 +23,8 @@ Labels = NDArray[np.integer]
 START, VISIT, SPREAD = 1, 2, 3
 # k-means++ draws a batch of new centres at once: this share of those it has.
 BATCH = 8
-# Numbers in one block of scores: 1 MB of float32 stays in the cache.
-BLOCK = 1 << 18
+# Numbers in one block of scores: half a megabyte of float32 stays in the cache.
+BLOCK = 1 << 17
 # Squared distances below this share of the cloud's are rounding of equal points.
 SAME = 1e-13
 
@@ -175,8 +175,11 @@ def spread_start(points: Array, weights: Array, count: int, seed: int) -> Labels
     new = chosen
     while len(new) and len(chosen) < count:
         # Keep the distance to the nearest of all that are drawn.
-        away = own[:, None] - 2.0 * points @ points[new].T + own[new]
-        np.minimum(squares, away.min(axis=1), out=squares)
+        rows = max(1, BLOCK // len(new))
+        for start in range(0, len(points), rows):
+            part = slice(start, start + rows)
+            away = own[part, None] - 2.0 * points[part] @ points[new].T + own[new]
+            np.minimum(squares[part], away.min(axis=1), out=squares[part])
         squares[squares < SAME] = 0.0
         squares[new] = 0.0
         size = min(count - len(chosen), max(1, len(chosen) // BATCH))
@@ -206,16 +209,25 @@ def _scaled(points: Array) -> tuple[Array, Array, float]:
 
 def _nearest(points: Array, centers: Array) -> Labels:
     """Find the nearest centre of each point, lowest number first, in float32."""
-    # The largest x.c - |c|^2/2 is the nearest: one matrix product with 4 columns.
-    rows = np.hstack([points, np.full((len(points), 1), -1.0)]).astype(np.float32)
-    half = 0.5 * np.einsum("ij,ij->i", centers, centers)
-    columns = np.vstack([centers.T, half]).astype(np.float32)
+    # The largest x.c - |c|^2/2 is the nearest. Three products and sums on blocks that
+    # stay in the cache; a matrix product of so few columns gains nothing, starts
+    # threads that wait for each other, and may differ in last bits between machines.
+    rows, columns = points.astype(np.float32), centers.astype(np.float32)
+    half = (0.5 * np.square(centers).sum(axis=1)).astype(np.float32)
     step = max(1, BLOCK // max(1, len(centers)))
-    parts = [
-        (rows[start : start + step] @ columns).argmax(axis=1)
-        for start in range(0, len(rows), step)
-    ]
-    return np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
+    score = np.empty((step, len(centers)), dtype=np.float32)
+    term = np.empty_like(score)
+    labels = np.zeros(len(points), dtype=np.intp)
+    for start in range(0, len(rows), step):
+        part = rows[start : start + step]
+        a, b = score[: len(part)], term[: len(part)]
+        np.multiply(part[:, :1], columns[:, 0], out=a)
+        a -= half
+        for axis in (1, 2):
+            np.multiply(part[:, axis : axis + 1], columns[:, axis], out=b)
+            a += b
+        labels[start : start + step] = a.argmax(axis=1)
+    return labels
 
 
 def _means(points: Array, weights: Array, centers: Array, labels: Labels) -> Array:

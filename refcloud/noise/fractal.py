@@ -177,9 +177,9 @@ def octave_sum_grid(
     absolute
         Whether the sum's absolute value is taken, as the paper does.
     finest
-        Spacing of the samples, in cells of the first octave. Lattice noise repeats in no
-        less than two cells, so an octave with less than one sample per cell cannot be
-        shown and is skipped; None skips nothing.
+        Spacing of the samples, in cells of the first octave. Lattice noise repeats in
+        two cells at the least, so an octave with less than one sample per cell cannot
+        be shown and is skipped; None skips nothing.
 
     Returns
     -------
