@@ -17,24 +17,16 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Range, Shape
 
-LONGEST_TEXT = 64  # characters: names of formats and kernels are shorter
-WIDEST_NUMBER = 8  # bytes: float64 and int64
+# Kinds of array: numpy's letters for them, in words, and most bytes of one element.
+NUMBERS = ("iuf", "integers or floats", 8)
+WHOLE = ("iu", "a whole number", 8)
+TEXT = ("U", "a short text", 4 * 64)  # names of formats and kernels are shorter
 SUFFIX = ".npy"  # what numpy appends to an array's name inside the archive
 # Everything that the readers of zip archives and of array headers raise on damage.
 DAMAGE = (
-    zipfile.BadZipFile,
-    zlib.error,
-    EOFError,
-    OSError,
-    ValueError,
-    KeyError,
-    TypeError,
-    OverflowError,
-    RuntimeError,
-    SyntaxError,
-    struct.error,
-    tokenize.TokenError,
-    UserWarning,
+    *(zipfile.BadZipFile, zlib.error, struct.error, tokenize.TokenError, EOFError),
+    *(OSError, ValueError, KeyError, TypeError, OverflowError, RuntimeError),
+    *(SyntaxError, UserWarning),
 )
 
 
@@ -182,91 +174,82 @@ def read_arrays(
         raise FileNotFoundError(f"{file}: expected a {format} file, got no such file")
     if file.is_dir():
         raise ValueError(f"{file}: expected a {format} file, got a folder")
+    sizes: dict[str, int] = {}
     try:
-        archive = zipfile.ZipFile(file)
+        with _opened(file, format) as archive:
+            _check_kind(archive, format, version)
+            return {
+                name: _read(
+                    archive, name, shape, NUMBERS if shape.axes else TEXT, sizes, most
+                )
+                for name, shape in shapes.items()
+            }
+    except _UnfitError as unfit:
+        raise ValueError(f"{file}: expected {unfit}") from None
+
+
+class _UnfitError(Exception):
+    """What was expected and what came; the file's name is added where it is caught."""
+
+
+def _opened(file: Path, format: str) -> zipfile.ZipFile:
+    try:
+        return zipfile.ZipFile(file)
     except PermissionError:
-        raise ValueError(
-            f"{file}: expected a readable file, got no permission"
-        ) from None
+        raise _UnfitError("a readable file, got no permission") from None
     except DAMAGE:
-        raise _refusal(
-            file, f"a {format} file", "one that is not a whole .npz"
-        ) from None
-    with archive:
-        _check_kind(file, archive, format, version)
-        sizes: dict[str, int] = {}
-        return {
-            name: _read(file, archive, name, shape, sizes, most)
-            for name, shape in shapes.items()
-        }
+        raise _UnfitError(f"a {format} file, got one that is no whole .npz") from None
 
 
-def _refusal(file: Path, expected: str, got: str) -> ValueError:
-    return ValueError(f"{file}: expected {expected}, got {got}")
-
-
-def _check_kind(
-    file: Path, archive: zipfile.ZipFile, format: str, version: int
-) -> None:
+def _check_kind(archive: zipfile.ZipFile, format: str, version: int) -> None:
     """Compare the file's own format and version with those that are expected."""
-    kind = str(_read(file, archive, "format", Shape(), {}, 1))
+    kind = str(_read(archive, "format", Shape(), TEXT, {}, 1))
     if kind != format:
-        raise _refusal(file, f"a {format} file", f"format {kind!r}")
-    stored = _read(file, archive, "version", Shape("one"), {}, 1, scalar=True)
-    if stored.dtype.kind not in "iu" or stored < 1:
-        raise _refusal(file, "a version that is a whole number from 1", f"{stored}")
+        raise _UnfitError(f"a {format} file, got format {kind!r}")
+    stored = int(_read(archive, "version", Shape(), WHOLE, {}, 1))
+    if stored < 1:
+        raise _UnfitError(f"a version from 1, got {stored}")
     if stored > version:
-        raise _refusal(
-            file, f"{format} version {version} or older", f"version {stored}; update"
+        raise _UnfitError(
+            f"{format} version {version} or older, got version {stored}; update"
         )
 
 
 def _read(
-    file: Path,
     archive: zipfile.ZipFile,
     name: str,
     shape: Shape,
+    kind: tuple[str, str, int],
     sizes: dict[str, int],
     most: int,
-    scalar: bool = False,
 ) -> np.ndarray:
     """Read one member: its header first, its numbers when they fit."""
     if name + SUFFIX not in archive.NameToInfo:
-        raise _refusal(file, f"an array {name!r}", "none of that name")
+        raise _UnfitError(f"an array {name!r}, got none of that name")
     info = archive.getinfo(name + SUFFIX)
+    letters, words, widest = kind
     try:
         with archive.open(info) as member:
             stored, fortran, dtype = _header(member)
-            if not scalar and not shape.fits(stored, sizes):
-                raise _UnfitError(
-                    f"{name} of shape {_named(shape, sizes)}", f"shape {stored}"
-                )
-            if scalar and stored != ():
-                raise _UnfitError(f"{name} as one number", f"shape {stored}")
-            _check_dtype(name, dtype, text=not shape.axes)
             count = math.prod(stored)
-            if count > most:
-                raise _UnfitError(f"{name} of at most {most} numbers", f"{count}")
             size = count * dtype.itemsize
+            if not shape.fits(stored, sizes):
+                known = {k: v for k, v in sizes.items() if k in shape.axes}
+                where = "".join(f", {k} = {v}" for k, v in known.items())
+                raise _UnfitError(f"{name} of shape {shape}{where}, got {stored}")
+            if dtype.kind not in letters or dtype.itemsize > widest:
+                raise _UnfitError(f"{name} as {words}, got {dtype}")
+            if count > most:
+                raise _UnfitError(f"{name} of at most {most} numbers, got {count}")
             if size > info.file_size:
-                raise _UnfitError(f"{name} with {count} numbers", "fewer")
+                raise _UnfitError(f"{name} with {count} numbers, got fewer")
             data = member.read(size)
             if len(data) != size or member.read(1):  # the end also proves the checksum
-                raise _UnfitError(f"{name} with {count} numbers", "another count")
-    except _UnfitError as unfit:
-        raise _refusal(file, unfit.expected, unfit.got) from None
+                raise _UnfitError(f"{name} with {count} numbers, got another count")
     except DAMAGE:
-        raise _refusal(file, f"a readable array {name!r}", "a damaged one") from None
+        raise _UnfitError(f"a readable array {name!r}, got a damaged one") from None
     array = np.frombuffer(data, dtype).reshape(stored, order="F" if fortran else "C")
     return array.astype(dtype.newbyteorder("="), copy=False)
-
-
-class _UnfitError(Exception):
-    """An array's header does not fit; the file's name is added where it is caught."""
-
-    def __init__(self, expected: str, got: str) -> None:
-        super().__init__(expected)
-        self.expected, self.got = expected, got
 
 
 def _header(member: Any) -> tuple[tuple[int, ...], bool, np.dtype]:
@@ -281,17 +264,3 @@ def _header(member: Any) -> tuple[tuple[int, ...], bool, np.dtype]:
     if any(not isinstance(axis, int) or axis < 0 for axis in shape):
         raise ValueError("a size below 0")
     return shape, fortran, dtype
-
-
-def _check_dtype(name: str, dtype: np.dtype, text: bool) -> None:
-    if text:
-        longest = LONGEST_TEXT * np.dtype("U1").itemsize
-        if dtype.kind != "U" or dtype.itemsize > longest:
-            raise _UnfitError(f"{name} as a short text", f"{dtype}")
-    elif dtype.kind not in "iuf" or dtype.itemsize > WIDEST_NUMBER:
-        raise _UnfitError(f"{name} of integers or floats", f"{dtype}")
-
-
-def _named(shape: Shape, sizes: dict[str, int]) -> str:
-    known = ", ".join(f"{k} = {v}" for k, v in sizes.items() if k in shape.axes)
-    return f"{shape} with {known}" if known else f"{shape}"

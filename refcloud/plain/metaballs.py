@@ -163,10 +163,9 @@ def adaptive_kmeans(
         for j in order:
             k = nearest(points[j], centers)
             hits[k] += 1
-            for axis in range(3):
-                centers[k][axis] += (points[j][axis] - centers[k][axis]) / math.sqrt(
-                    hits[k]
-                )
+            rate = 1.0 / math.sqrt(hits[k])
+            pairs = zip(centers[k], points[j], strict=True)
+            centers[k] = [c + rate * (x - c) for c, x in pairs]
     return centers
 
 
@@ -232,10 +231,8 @@ def gradient_descent(
             for row, target in zip(design, y, strict=True)
         ]
         for k in range(count):
-            slope = -2.0 * sum(
-                r * row[k] for r, row in zip(left, design, strict=True)
-            )  # dH/dv_k
-            v[k] -= rate * slope
+            down = 2.0 * sum(r * row[k] for r, row in zip(left, design, strict=True))
+            v[k] += rate * down
     return v
 
 

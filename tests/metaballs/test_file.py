@@ -36,9 +36,12 @@ WRONG = {
     "a negative density": ({"densities": -np.ones(2)}, "densities: expected numbers"),
     "not a number": ({"centers": np.full((2, 3), np.nan)}, "centers: expected|finite"),
     "another kernel": ({"kernel": "blob"}, "kernel: expected one of"),
-    "another count": ({"radii": np.ones(3)}, r"radii of shape \(N,\) with N = 2"),
+    "another count": (
+        {"radii": np.ones(3)},
+        r"radii of shape \(N,\), N = 2, got \(3,\)",
+    ),
     "another shape": ({"centers": np.zeros((2, 2))}, r"centers of shape \(N, 3\)"),
-    "texts": ({"radii": np.array(["a", "b"])}, "radii of integers or floats"),
+    "texts": ({"radii": np.array(["a", "b"])}, "radii as integers or floats"),
 }
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from twins.metaballs import scattered, seeds
 
 from refcloud.metaballs import adaptive_kmeans, depth, lloyd, rms_radii
-from refcloud.metaballs.kmeans import spread_start, start_patterns, visits
+from refcloud.metaballs.choices import spread_start, start_patterns, visits
 from refcloud.metaballs.weights import voxel_weights
 
 LATTICE = np.argwhere(np.ones((9, 9, 9))).astype(float)

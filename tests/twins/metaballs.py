@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import refcloud.metaballs as array
 from refcloud.cloudmap.voxels import VoxelGrid, cell_centres
-from refcloud.metaballs.kmeans import spread_start, start_patterns, visits
+from refcloud.metaballs.choices import spread_start, start_patterns, visits
 from refcloud.noise.hashing import uniform
 from refcloud.plain import metaballs as plain
 from twins import twin
