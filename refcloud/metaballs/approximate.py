@@ -11,7 +11,7 @@ from refcloud.checking import checked
 from refcloud.cloudmap.voxels import VoxelGrid
 from refcloud.conventions import Array, Range, Seed, Skipped
 from refcloud.metaballs.balls import Metaballs
-from refcloud.metaballs.heights import descend
+from refcloud.metaballs.heights import descend, dot
 from refcloud.metaballs.kernels import Kernel
 from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
 from refcloud.metaballs.nonnegative import solve_non_negative
@@ -152,7 +152,7 @@ def approximate(
 
 def _heights(pairs: Pairs, method: str, start: Array | None = None) -> Array:
     if method == "man":
-        limit = PAPER_ERROR**2 * float(pairs.target @ pairs.target)
+        limit = PAPER_ERROR**2 * dot(pairs.target, pairs.target)
         return descend(
             pairs.forward,
             pairs.backward,

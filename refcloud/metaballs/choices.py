@@ -14,8 +14,9 @@ Labels = NDArray[np.integer]
 START, VISIT, SPREAD = 1, 2, 3
 # k-means++ draws a batch of new centres at once: this share of those it has.
 BATCH = 8
-# Distances worked out at a time: 2 MB of float64.
-BLOCK = 1 << 18
+# Distances worked out at a time: few enough for a matrix product on one thread, since
+# threads that wait for one another cost more than they save.
+BLOCK = 1 << 16
 # Squared distances below this share of the cloud's are rounding of equal points.
 SAME = 1e-13
 

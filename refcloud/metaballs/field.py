@@ -48,7 +48,8 @@ def field(balls: Metaballs, points: Annotated[Array, Shape("...", 3)]) -> Array:
             for axis in range(3):
                 away = part[:, axis, None] - balls.centers[:, axis]
                 q += (away / balls.radii) ** 2
-        total[start : start + rows] = profile_of(q, balls.kernel) @ balls.densities
+        shares = profile_of(q, balls.kernel)
+        total[start : start + rows] = np.einsum("ij,j->i", shares, balls.densities)
     return total.reshape(points.shape[:-1])
 
 

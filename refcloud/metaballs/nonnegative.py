@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Shape
-from refcloud.metaballs.heights import Product, power_iteration
+from refcloud.metaballs.heights import Product, dot, power_iteration
 
 # Optimality: the projected gradient against the right side, and the most steps.
 OPTIMAL = 1e-12
@@ -86,7 +87,7 @@ def solve_non_negative(
     scale = np.zeros_like(right)
     np.divide(1.0, np.sqrt(diagonal), out=scale, where=diagonal > 0.0)
     b = scale * right
-    size = float(np.linalg.norm(b))
+    size = math.sqrt(dot(b, b))
     x = np.zeros_like(b)
     if start is not None and size > 0.0:
         np.divide(start, scale, out=x, where=scale > 0.0)
@@ -103,29 +104,29 @@ def solve_non_negative(
     off = np.inf
     for _ in range(most_steps):
         bound = np.where(x > 0.0, 0.0, np.minimum(gradient, 0.0))
-        off = float(np.sqrt(free @ free + bound @ bound)) / size
+        off = math.sqrt(dot(free, free) + dot(bound, bound)) / size
         if off <= optimal:
             break
         reduced = np.minimum(x / step, free)
-        if bound @ bound > reduced @ free:  # release
+        if dot(bound, bound) > dot(reduced, free):  # release
             image = times(bound)
-            length = float(gradient @ bound) / float(bound @ image)
+            length = dot(gradient, bound) / dot(bound, image)
             x = x - length * bound
             gradient = gradient - length * image
             free = direction = np.where(x > 0.0, gradient, 0.0)
             continue
         image = times(direction)
-        curvature = float(direction @ image)
+        curvature = dot(direction, image)
         falling = direction > 0.0
         reach = float((x[falling] / direction[falling]).min(initial=np.inf))
-        length = float(gradient @ direction) / curvature if curvature > 0.0 else reach
+        length = dot(gradient, direction) / curvature if curvature > 0.0 else reach
         if length == np.inf:  # flat without end: singular, and as good as it gets
             break
         if length <= reach and curvature > 0.0:
             x = np.maximum(x - length * direction, 0.0)  # rounding may end below
             gradient = gradient - length * image
             free = np.where(x > 0.0, gradient, 0.0)
-            direction = free - float(free @ image) / curvature * direction
+            direction = free - dot(free, image) / curvature * direction
         else:  # up to the first 0, then one projected step
             x = np.maximum(x - reach * direction, 0.0)
             gradient = gradient - reach * image

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refcloud.conventions import Array
+from refcloud.metaballs.heights import dot
 from refcloud.metaballs.kernels import Kernel, slope_of
 from refcloud.metaballs.pairs import Pairs, Work, list_pairs
 
@@ -52,15 +53,16 @@ def refine(
     damping = DAMPING
     pairs = list_pairs(work, fit.centers, fit.radii, kernel)
     residual = pairs.target - pairs.forward(fit.heights)
-    cost = float(residual @ residual)
+    cost = dot(residual, residual)
     jacobian = _jacobian(pairs, fit, kernel)
     for number in range(steps):
         step = _solve(pairs, jacobian, residual, damping)
         trial = _moved(work, fit, step, least_radius)
         listed = list_pairs(work, trial.centers, trial.radii, kernel)
         left = listed.target - listed.forward(trial.heights)
-        if float(left @ left) < cost:
-            fit, pairs, residual, cost = trial, listed, left, float(left @ left)
+        trial_cost = dot(left, left)
+        if trial_cost < cost:
+            fit, pairs, residual, cost = trial, listed, left, trial_cost
             jacobian = _jacobian(pairs, fit, kernel)
             damping *= EASE
         else:

@@ -83,7 +83,7 @@ def test_learning_ends_at_the_limit_of_the_error(seed):
     first = gradient_descent(design, y, most_steps=1)
     limit = error(design, y, first) * (1 + 1e-9)
     np.testing.assert_array_equal(gradient_descent(design, y, limit=limit), first)
-    assert not gradient_descent(design, y, limit=float(y @ y)).any()
+    assert not gradient_descent(design, y, limit=float(y @ y) * (1 + 1e-9)).any()
 
 
 def test_a_design_of_zeros_learns_nothing():
