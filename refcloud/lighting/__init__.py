@@ -4,9 +4,10 @@ from refcloud.lighting.colours import Haze, ball_colours
 from refcloud.lighting.erosion import detail_grid, eroded, lit_share
 from refcloud.lighting.eyeward import eyeward
 from refcloud.lighting.lightfield import LightField, field_value, light_field
+from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import MAN, Look, named
 from refcloud.lighting.order import depth_order
-from refcloud.lighting.sunward import LitMetaballs, sunward
+from refcloud.lighting.sunward import sunward
 
 __all__ = [
     "MAN",

@@ -10,7 +10,9 @@ import numpy as np
 from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import check_fields, checked
 from refcloud.conventions import WHOLE_SPHERE, Array, Colour, Positive
-from refcloud.lighting.sunward import LitMetaballs, ball_depths, handed_on
+from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.lit import LitMetaballs
+from refcloud.lighting.sunward import handed_on
 from refcloud.optics import PHASE_MAN2003, coupling_man2003, phase
 
 

@@ -20,7 +20,7 @@ OCTAVES = 4
 PERSISTENCE = 0.6
 NEARLY_ALL = 0.64  # 99 % of 4 million samples of |eq 1| with these octaves lie below
 SAMPLES = 2.0  # per cell of the finest octave: its bumps must show, not only exist
-MOST_CELLS = 5_000_000  # 40 MB of float64; a wider cloud gets a coarser table
+MOST_CELLS = 8_000_000  # 64 MB of float64; a wider cloud gets a coarser table
 SOFT = 0.3  # width over which the cut-back footprint rises
 
 

@@ -1,7 +1,9 @@
 """Pass 2: the light that the balls send to the eye (paper M, section 4.2).
 
 Balls are drawn far to near over the background; each adds what it scatters toward the
-eye and lets through the rest: c = 1 g* + T c (eq 28, 29). Nothing is read back.
+eye and lets through the rest: c = 1 g* + T c (eq 28, 29). Nothing is read back. With a
+tolerance they are drawn near to far, under each other: the same sums, and what lies
+behind an opaque front need not be drawn.
 """
 
 from __future__ import annotations
@@ -10,17 +12,19 @@ from collections.abc import Callable
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from refcloud.camera import AnyCamera, axes, project
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Seed, Shape, Skipped, Tolerance
 from refcloud.lighting.colours import Haze, ball_colours, clearness
+from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.erosion import detail_grid
+from refcloud.lighting.hidden import on_screen, without_faint
 from refcloud.lighting.lightfield import light_field
+from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.order import depth_order
-from refcloud.lighting.shading import Ball, Shading, draw_ball
-from refcloud.lighting.sunward import LitMetaballs, ball_depths
+from refcloud.lighting.shading import Ball, Shading, draw_over, draw_under
+from refcloud.raster.blending import blend_patch
 
 Observer = Callable[[str, Any], None]
 RISE = 0.25  # of the noise's coarsest cell: the step toward a sun that shows its relief
@@ -37,7 +41,7 @@ def eyeward(
     seed: Seed = 0,
     observe: Observer | None = None,
 ) -> tuple[Array, tuple[Skipped, ...]]:
-    """Draw lit balls as the camera sees them: pass 2, the literal loop.
+    """Draw lit balls as the camera sees them: pass 2.
 
     Formula: I*_k = g*_k + T_k I*_{k-1} from the farthest ball on, I*_0 the background
 
@@ -52,7 +56,7 @@ def eyeward(
     haze
         Air in front of the balls; None for none.
     tolerance
-        Largest change of a channel that leaving out faint balls may make.
+        Largest change of a channel that leaving out faint and hidden balls may make.
     seed
         Chooses the noise of eroded footprints.
     observe
@@ -85,7 +89,7 @@ def eyeward(
     radius = balls.radii * scale
 
     # 2. Leave out what cannot show.
-    visible, skipped = _on_screen(x, y, radius, camera)
+    visible, skipped = on_screen(x, y, radius, camera)
     dark = sum(1 for sun in lit.suns if not sun.irradiance.any())
     if dark:
         skipped.append(Skipped("light", "suns without light", dark, len(lit.suns)))
@@ -95,8 +99,8 @@ def eyeward(
     brightest = max(colours.sum(axis=1).max(initial=0.0), pixels.max(initial=0.0))
     if haze is not None:
         brightest = max(brightest, float(haze.color.max()))
-    visible, faint = _without_faint(visible, tau.max(axis=0), brightest, tolerance)
-    skipped += faint
+    visible, rows = without_faint(visible, tau.max(axis=0), brightest, tolerance / 2.0)
+    skipped += rows
 
     # 3. Light as a field, and the noise that erodes footprints.
     field = detail = None
@@ -119,15 +123,19 @@ def eyeward(
     clear = clearness(haze, balls.centers, camera)
     air = np.zeros(3) if haze is None else haze.color
 
-    # 4. Far to near: draw. A grey medium needs one pass, a coloured one three (L12).
-    order = depth_order(balls, depth)[::-1]
+    # 4. Draw. A grey medium needs one pass, a coloured one three (L12).
+    order = depth_order(balls, depth)
     order = order[visible[order]]
     watch("eye order", order)
+    # Behind pixels that let no more than this through, all together changes less than
+    # half the tolerance: it is between 0 and the brightest, and is seen through them.
+    least = 0.5 * tolerance / brightest if brightest > 0.0 else 1.0
+    drawn = np.zeros_like(pixels)
     groups = [np.flatnonzero(sigma_ts == s) for s in dict.fromkeys(sigma_ts.tolist())]
-    parts = [pixels, *(pixels.copy() for _ in groups[1:])]
-    for channels, part in zip(groups, parts, strict=True):
-        for k in order:
-            ball = Ball(
+    hidden = len(order)
+    for channels in groups:
+        chosen = (
+            Ball(
                 float(x[k]),
                 float(y[k]),
                 float(radius[k]),
@@ -138,15 +146,26 @@ def eyeward(
                 float(clear[k]),
                 air * (1.0 - clear[k]),
             )
-            draw_ball(part, shading, ball)
-    if len(groups) > 1:
-        alpha = sum(
-            len(c) * part[..., 3] for c, part in zip(groups, parts, strict=True)
+            for k in (order if tolerance > 0.0 else order[::-1])
         )
-        for channels, part in zip(groups, parts, strict=True):
-            pixels[..., channels] = part[..., channels]
-        pixels[..., 3] = alpha / 3.0
-    return pixels, tuple(skipped)
+        if tolerance > 0.0:
+            part = np.zeros_like(pixels)
+            seen = sum(draw_under(part, shading, ball, least) for ball in chosen)
+            hidden = min(hidden, len(order) - seen)
+            blend_patch(part, pixels, "ONE_MINUS_DST_ALPHA", "ONE")
+        else:
+            part = pixels.copy()
+            for ball in chosen:
+                draw_over(part, shading, ball)
+            hidden = 0
+        drawn[..., channels] = part[..., channels]
+        drawn[..., 3] += part[..., 3] * (len(channels) / 3.0)
+    if hidden:
+        row = Skipped(
+            "eye", "balls behind opaque ones", hidden, len(x), tolerance / 2.0
+        )
+        skipped.append(row)
+    return drawn, tuple(skipped)
 
 
 def _eye_depths(lit: LitMetaballs, sigma_t: float, depth: Array) -> Array:
@@ -157,40 +176,3 @@ def _eye_depths(lit: LitMetaballs, sigma_t: float, depth: Array) -> Array:
     nearness = np.clip(depth / lit.balls.radii, 0.0, 1.0)
     fade = nearness * nearness * (3.0 - 2.0 * nearness)
     return ball_depths(lit.balls, sigma_t, lit.look) * fade * lit.look.erosion_depth
-
-
-def _on_screen(
-    x: Array, y: Array, radius: Array, camera: AnyCamera
-) -> tuple[NDArray[np.bool_], list[Skipped]]:
-    """Tell which balls touch the picture; the others change nothing."""
-    in_front = radius > 0.0
-    across = (x + radius > 0.0) & (x - radius < camera.width)
-    down = (y + radius > 0.0) & (y - radius < camera.height)
-    visible = in_front & across & down
-    hidden = len(x) - int(visible.sum())
-    rows = [Skipped("eye", "balls off the picture", hidden, len(x))] if hidden else []
-    return visible, rows
-
-
-def _without_faint(
-    visible: NDArray[np.bool_], tau: Array, brightest: float, tolerance: float
-) -> tuple[NDArray[np.bool_], list[Skipped]]:
-    """Leave out the faintest balls while their total effect stays in the tolerance.
-
-    Proved: every colour in the buffer and in the balls lies in [0, brightest], so a
-    ball of opacity a changes no pixel by more than a times brightest, and the changes
-    of several add up at most.
-    """
-    effect = -np.expm1(-tau) * brightest
-    candidates = np.flatnonzero(visible)
-    ranked = candidates[np.argsort(effect[candidates], kind="stable")]
-    total = np.cumsum(effect[ranked])
-    faint = ranked[total <= tolerance]
-    if not len(faint):
-        return visible, []
-    kept = visible.copy()
-    kept[faint] = False
-    bound = float(total[len(faint) - 1])
-    return kept, [
-        Skipped("eye", "balls too faint to show", len(faint), len(tau), bound)
-    ]

@@ -80,8 +80,8 @@ class Ball:
     haze: Array
 
 
-def draw_ball(pixels: Array, shading: Shading, ball: Ball) -> None:
-    """Blend one ball into the framebuffer, unchecked.
+def draw_over(pixels: Array, shading: Shading, ball: Ball) -> None:
+    """Blend one ball over what lies behind it: eq 28, for balls drawn far to near.
 
     Parameters
     ----------
@@ -94,13 +94,76 @@ def draw_ball(pixels: Array, shading: Shading, ball: Ball) -> None:
     """
     height, width = pixels.shape[:2]
     patch = patch_of(ball.x, ball.y, ball.radius, width, height)
+    if patch is not None:
+        right, up = _offsets(patch, ball)
+        behind = pixels[patch.rows, patch.columns]
+        blend_patch(behind, ball_source(patch.q, right, up[:, None], shading, ball))
+
+
+def draw_under(pixels: Array, shading: Shading, ball: Ball, least: float) -> bool:
+    """Blend one ball under what lies in front of it, for balls drawn near to far.
+
+    Blending with ONE_MINUS_DST_ALPHA and ONE under the nearer balls makes the same sums
+    as eq 28 from behind, and the framebuffer's alpha tells where nothing can show.
+
+    Parameters
+    ----------
+    pixels
+        The framebuffer, RGBA, shape (H, W, 4), cleared to 0, written in place.
+    shading
+        What all balls share.
+    ball
+        The ball.
+    least
+        Pixels that let no more than this share through are left as they are.
+
+    Returns
+    -------
+    False where the ball lies behind such pixels alone.
+    """
+    height, width = pixels.shape[:2]
+    patch = patch_of(ball.x, ball.y, ball.radius, width, height)
     if patch is None:
-        return
+        return True
+    # Work on a list of those pixels that the ball covers and that still let light by.
+    clear = pixels[patch.rows, patch.columns, 3] < 1.0 - least
+    j, i = np.nonzero(clear & (patch.q < 1.0))
+    if not len(j):
+        return bool(clear.any())
+    right, up = _offsets(patch, ball)
+    source = ball_source(patch.q[j, i], right[i], up[j], shading, ball)
+    j, i = j + patch.rows.start, i + patch.columns.start
+    front = pixels[j, i]
+    blend_patch(front, source, "ONE_MINUS_DST_ALPHA", "ONE")
+    pixels[j, i] = front
+    return True
+
+
+def ball_source(
+    q: Array, right: Array, up: Array, shading: Shading, ball: Ball
+) -> Array:
+    """Give what a ball adds to pixels, colour times opacity and opacity, unchecked.
+
+    Parameters
+    ----------
+    q
+        Squared distance from the ball's centre in the picture, in radii squared.
+    right, up
+        That distance's parts in radii; they broadcast to the shape of q, (...,).
+    shading
+        What all balls share.
+    ball
+        The ball.
+
+    Returns
+    -------
+    RGBA, shape (..., 4).
+    """
     look, detail = shading.look, shading.detail
-    weight = footprint_of(patch.q, shading.kernel, look.footprint)
+    weight = footprint_of(q, shading.kernel, look.footprint)
     points = noise = None
     if detail is not None or shading.field is not None:
-        points = _places(patch, shading, ball)
+        points = _places(q, right, up, shading, ball)
 
     # 1. Cut the footprint back by the noise at that place in the world.
     if detail is not None and points is not None:
@@ -133,15 +196,22 @@ def draw_ball(pixels: Array, shading: Shading, ball: Ball) -> None:
     opacity = opacity_of(weight, ball.tau, look.transmittance)
     source[..., 3] = opacity
     np.multiply(color, opacity[..., None], out=source[..., :3])
-    blend_patch(pixels[patch.rows, patch.columns], source)
+    return source
 
 
-def _places(patch: Patch, shading: Shading, ball: Ball) -> list[Array]:
-    """Give x, y and z of the places in the world that the ball's pixels show."""
+def _offsets(patch: Patch, ball: Ball) -> tuple[Array, Array]:
+    """Give the columns' and rows' distances from the ball's centre, in radii."""
     rows, columns = patch.rows, patch.columns
-    right = (np.arange(columns.start, columns.stop) + (0.5 - ball.x)) / ball.radius
-    up = (ball.y - 0.5 - np.arange(rows.start, rows.stop))[:, None] / ball.radius
-    back = np.maximum(1.0 - patch.q, 0.0)
+    right = np.arange(columns.start, columns.stop) + (0.5 - ball.x)
+    up = (ball.y - 0.5) - np.arange(rows.start, rows.stop)
+    return right / ball.radius, up / ball.radius
+
+
+def _places(
+    q: Array, right: Array, up: Array, shading: Shading, ball: Ball
+) -> list[Array]:
+    """Give x, y and z of the places in the world that the ball's pixels show."""
+    back = np.maximum(1.0 - q, 0.0)
     np.sqrt(back, out=back)
     back *= FRONT
     per_right, per_up, per_back = shading.frame * ball.R

@@ -6,19 +6,19 @@ framebuffer is read back over its projection: the mean is the light that reaches
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
 from refcloud.camera import OrthographicCamera, project
-from refcloud.checking import check_fields, checked
-from refcloud.conventions import Array, Range, Shape
+from refcloud.checking import checked
+from refcloud.conventions import Array
+from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import Look, LookName, named
 from refcloud.lighting.order import depth_order
-from refcloud.metaballs import Metaballs, axis_depth
+from refcloud.metaballs import Metaballs
 from refcloud.optics import (
     PHASE_MAN2003,
     Medium,
@@ -36,44 +36,6 @@ from refcloud.raster.splat import mean_of
 Observer = Callable[[str, Any], None]
 FROM_ABOVE = np.array([0.0, 1.0, 0.0])
 BORDER = 1.02  # room around the cloud in the sun's buffer, as a factor
-
-
-@dataclass(frozen=True)
-class LitMetaballs:
-    """Balls and the light that reaches them, ready for any eye.
-
-    Attributes
-    ----------
-    balls
-        The cloud, N balls.
-    suns
-        The S suns.
-    light
-        Irradiance that reaches each ball from each sun, before the phase function
-        (E26), shape (S, N, 3).
-    ambient
-        Radiance that sky and ground give each ball, shape (N, 3).
-    medium
-        What the cloud is made of.
-    look
-        The rules that carried the light.
-    """
-
-    balls: Metaballs
-    suns: tuple[Sun, ...]
-    light: Annotated[Array, Shape("S", "N", 3), Range(0.0, unit="radiance sr")]
-    ambient: Annotated[Array, Shape("N", 3), Range(0.0, unit="radiance")]
-    medium: Medium
-    look: Look
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-        expected = (len(self.suns), len(self.balls.radii))
-        if self.light.shape[:2] != expected or len(self.ambient) != expected[1]:
-            raise ValueError(
-                f"light: expected shape {(*expected, 3)} for these suns and balls,"
-                f" got {self.light.shape} with ambient of shape {self.ambient.shape}"
-            )
 
 
 @checked
@@ -186,27 +148,6 @@ def light_share(
     return share
 
 
-def ball_depths(balls: Metaballs, sigma_t: float, look: Look) -> Array:
-    """Give each ball's optical depth on its axis, unchecked.
-
-    Parameters
-    ----------
-    balls
-        The cloud.
-    sigma_t
-        Extinction at density 1, 1 / scene unit.
-    look
-        Its `tau`, where given, stands for every ball (the paper's figures).
-
-    Returns
-    -------
-    Shape (N,).
-    """
-    if look.tau is not None:
-        return np.full(len(balls.radii), look.tau)
-    return axis_depth(sigma_t, balls.densities, balls.radii, balls.kernel)
-
-
 def handed_on(look: Look, albedo: float, forward: float) -> Callable[[Array], Array]:
     """Give the rule for the share of light that a depth of tau scatters onward.
 
@@ -314,30 +255,3 @@ def _carry(
         blend_patch(buffer.pixels[patch.rows, patch.columns], source)
     watch("light buffer", buffer)
     return reached
-
-
-def through_the_middle(balls: Metaballs, sigma_t: float) -> float:
-    """Give a cloud's mean optical depth along x, y and z through its centre of mass.
-
-    Parameters
-    ----------
-    balls
-        The cloud.
-    sigma_t
-        Extinction at density 1, 1 / scene unit.
-
-    Returns
-    -------
-    tau, at least 0; 0 for an empty cloud.
-    """
-    mass = balls.densities * balls.radii**3
-    if not mass.sum() > 0.0:
-        return 0.0
-    middle = (mass / mass.sum()) @ balls.centers
-    square = np.square(balls.centers - middle)
-    depth = axis_depth(sigma_t, balls.densities, balls.radii, balls.kernel)
-    total = 0.0
-    for axis in range(3):
-        q = (square.sum(axis=1) - square[:, axis]) / np.square(balls.radii)
-        total += float(depth @ footprint_of(q, balls.kernel, "chord"))
-    return total / 3.0 if math.isfinite(total) else 0.0

@@ -1,0 +1,130 @@
+"""Drawing clouds, one over the other, before a background."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from refcloud.camera import AnyCamera
+from refcloud.checking import complaint
+from refcloud.conventions import Array, Skipped
+from refcloud.image import Picture
+from refcloud.lighting import Haze, Look, eyeward, sunward
+from refcloud.metaballs import Metaballs
+from refcloud.optics import Medium, Sun
+from refcloud.sky import Sky, clear_sky
+
+Observer = Callable[[str, Any], None]
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One cloud of a composed picture: its balls and what they are made of."""
+
+    balls: Metaballs
+    medium: Medium
+    look: Look
+    haze: Haze | None = None
+
+
+def draw_layers(
+    layers: Sequence[Layer],
+    camera: AnyCamera,
+    suns: tuple[Sun, ...],
+    background: Any,
+    *,
+    tolerance: float = 0.0,
+    seed: int = 0,
+    observe: Observer | None = None,
+) -> Picture:
+    """Draw clouds one over the other, the farthest first; each is lit by itself.
+
+    Parameters
+    ----------
+    layers
+        The clouds, farthest first; they cast no shadows on each other.
+    camera
+        The eye.
+    suns
+        The lights.
+    background
+        As `render`.
+    tolerance
+        Largest error of a channel; every layer gets an equal share.
+    seed, observe
+        As `render`.
+
+    Returns
+    -------
+    The picture.
+    """
+    seconds: dict[str, float] = {}
+    clock = _Clock(seconds)
+    behind = _painted(background, camera, suns)
+    clock.stop("sky")
+    skipped: list[Skipped] = []
+    rgba = np.zeros((camera.height, camera.width, 4))
+    if behind is not None:
+        rgba[..., :3], rgba[..., 3] = behind, 1.0
+    for layer in layers:
+        lit = sunward(
+            layer.balls, suns, medium=layer.medium, look=layer.look, observe=observe
+        )
+        clock.stop("light")
+        rgba, rows = eyeward(
+            lit,
+            camera,
+            background=None if behind is None else rgba[..., :3],
+            haze=layer.haze,
+            tolerance=tolerance / len(layers),
+            seed=seed,
+            observe=observe,
+        )
+        skipped += rows
+        clock.stop("eye")
+    skipped = list(merged(skipped))
+    alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
+    return Picture(rgba[..., :3], alpha, tuple(skipped), seconds)
+
+
+def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
+    """Add up the rows of several layers that say the same; errors add up at most."""
+    sums: dict[tuple[str, str], Skipped] = {}
+    for row in rows:
+        key = row.stage, row.what
+        old = sums.get(key, Skipped(*key, 0, 0))
+        sums[key] = Skipped(
+            *key, old.skipped + row.skipped, old.of + row.of, old.bound + row.bound
+        )
+    return tuple(sums.values())
+
+
+class _Clock:
+    """Adds the time since the last stop to a stage."""
+
+    def __init__(self, seconds: dict[str, float]) -> None:
+        self.seconds = seconds
+        self.since = time.perf_counter()
+
+    def stop(self, stage: str) -> None:
+        now = time.perf_counter()
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self.since
+        self.since = now
+
+
+def _painted(background: Any, camera: AnyCamera, suns: tuple[Sun, ...]) -> Array | None:
+    """Give what stands behind the clouds, (H, W, 3), or None for nothing."""
+    if isinstance(background, str):
+        return None
+    if isinstance(background, Sky):
+        return clear_sky(camera, background, suns=suns)
+    shape = (camera.height, camera.width, 3)
+    background = np.asarray(background)
+    if background.shape not in (shape, (3,)):
+        expected = f"shape {shape}, that of the picture"
+        raise ValueError(complaint("background", expected, f"shape {background.shape}"))
+    return np.broadcast_to(background, shape)

@@ -1,0 +1,50 @@
+"""Balls together with the light that reaches them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from refcloud.checking import check_fields
+from refcloud.conventions import Array, Range, Shape
+from refcloud.lighting.look import Look
+from refcloud.metaballs import Metaballs
+from refcloud.optics import Medium, Sun
+
+
+@dataclass(frozen=True)
+class LitMetaballs:
+    """Balls and the light that reaches them, ready for any eye.
+
+    Attributes
+    ----------
+    balls
+        The cloud, N balls.
+    suns
+        The S suns.
+    light
+        Irradiance that reaches each ball from each sun, before the phase function
+        (E26), shape (S, N, 3).
+    ambient
+        Radiance that sky and ground give each ball, shape (N, 3).
+    medium
+        What the cloud is made of.
+    look
+        The rules that carried the light.
+    """
+
+    balls: Metaballs
+    suns: tuple[Sun, ...]
+    light: Annotated[Array, Shape("S", "N", 3), Range(0.0, unit="radiance sr")]
+    ambient: Annotated[Array, Shape("N", 3), Range(0.0, unit="radiance")]
+    medium: Medium
+    look: Look
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        expected = (len(self.suns), len(self.balls.radii))
+        if self.light.shape[:2] != expected or len(self.ambient) != expected[1]:
+            raise ValueError(
+                f"light: expected shape {(*expected, 3)} for these suns and balls,"
+                f" got {self.light.shape} with ambient of shape {self.ambient.shape}"
+            )

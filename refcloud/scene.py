@@ -1,0 +1,81 @@
+"""What a named scene is, and the table of all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from refcloud.camera import AnyCamera
+from refcloud.checking import complaint
+from refcloud.conventions import Skipped
+from refcloud.image import Picture
+from refcloud.lighting import Look
+from refcloud.lighting.look import LookName
+from refcloud.metaballs import Metaballs
+from refcloud.optics import Medium, Sun
+
+Observer = Callable[[str, Any], None]
+
+
+@dataclass(frozen=True)
+class View:
+    """How a scene is to be drawn; what is None the scene chooses itself."""
+
+    width: int
+    height: int
+    camera: AnyCamera | None = None
+    suns: tuple[Sun, ...] | None = None
+    medium: Medium | None = None
+    look: Look | LookName | None = None
+    tolerance: float = 0.0
+    seed: int = 0
+    observe: Observer | None = None
+
+
+@dataclass(frozen=True)
+class Model:
+    """The clouds of a scene, by name, and how they came about."""
+
+    clouds: Mapping[str, Metaballs]
+    notes: tuple[str, ...] = ()
+    skipped: tuple[Skipped, ...] = ()
+    seconds: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A named scene: its clouds, and how they are drawn.
+
+    Attributes
+    ----------
+    name, title
+        What the command line calls it, and what it shows.
+    model
+        Makes the clouds.
+    draw
+        Draws them.
+    """
+
+    name: str
+    title: str
+    model: Callable[[], Model]
+    draw: Callable[[Model, View], Picture]
+
+
+# Names to scenes; each file of refcloud/scenes enters its own.
+SCENES: dict[str, Scene] = {}
+
+
+def enter(scene: Scene) -> Scene:
+    """Enter a scene into the table, and give it back."""
+    SCENES[scene.name] = scene
+    return scene
+
+
+def find_scene(name: str) -> Scene:
+    """Look a scene up, and name all of them where there is none of that name."""
+    if name not in SCENES:
+        known = ", ".join(sorted(SCENES))
+        raise ValueError(complaint("scene", f"one of {known}", repr(name)))
+    return SCENES[name]
