@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from refcloud.camera import AnyCamera, Camera, OrthographicCamera, frame
+from refcloud.camera import Camera, OrthographicCamera, frame
 from refcloud.checking import checked, complaint
 from refcloud.cloudmap import VoxelGrid
+from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import (
     WHOLE_SPHERE,
     Array,
@@ -20,16 +19,16 @@ from refcloud.conventions import (
     Range,
     Seed,
     Shape,
-    Skipped,
     Tolerance,
 )
 from refcloud.image import Picture
-from refcloud.lighting import Haze, Look, eyeward, named, sunward
+from refcloud.lighting import Haze, Look, named
+from refcloud.lighting.depths import through_the_middle
 from refcloud.lighting.look import LookName
-from refcloud.lighting.sunward import through_the_middle
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
-from refcloud.sky import Sky, clear_sky
+from refcloud.scene import View, find_scene
+from refcloud.sky import Sky
 
 Observer = Callable[[str, Any], None]
 Side = Annotated[int, Range(1, 64_000_000, "pixels")]
@@ -45,65 +44,6 @@ SUN = Sun(
     np.array([-0.62, 0.62, 0.42]),
     1.75 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89]),
 )
-
-
-@dataclass(frozen=True)
-class View:
-    """How a scene is to be drawn; what is None the scene chooses itself."""
-
-    width: int
-    height: int
-    camera: AnyCamera | None = None
-    suns: tuple[Sun, ...] | None = None
-    medium: Medium | None = None
-    look: Look | LookName | None = None
-    tolerance: float = 0.0
-    seed: int = 0
-    observe: Observer | None = None
-
-
-@dataclass(frozen=True)
-class Model:
-    """The clouds of a scene, by name, and how they came about."""
-
-    clouds: Mapping[str, Metaballs]
-    notes: tuple[str, ...] = ()
-    skipped: tuple[Skipped, ...] = ()
-    seconds: Mapping[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Scene:
-    """A named scene: its clouds, and how they are drawn.
-
-    Attributes
-    ----------
-    name, title
-        What the command line calls it, and what it shows.
-    model
-        Makes the clouds.
-    draw
-        Draws them.
-    """
-
-    name: str
-    title: str
-    model: Callable[[], Model]
-    draw: Callable[[Model, View], Picture]
-
-
-# Names to scenes; each file of refcloud/scenes enters its own.
-SCENES: dict[str, Scene] = {}
-
-
-@dataclass(frozen=True)
-class Layer:
-    """One cloud of a composed picture: its balls and what they are made of."""
-
-    balls: Metaballs
-    medium: Medium
-    look: Look
-    haze: Haze | None = None
 
 
 @checked
@@ -215,14 +155,6 @@ def render(
     return dataclasses.replace(picture, notes=(*notes, *picture.notes))
 
 
-def find_scene(name: str) -> Scene:
-    """Look a scene up, and name all of them where there is none of that name."""
-    if name not in SCENES:
-        known = ", ".join(sorted(SCENES))
-        raise ValueError(complaint("scene", f"one of {known}", repr(name)))
-    return SCENES[name]
-
-
 def default_medium(balls: Metaballs, look: Look) -> tuple[Medium, str]:
     """Choose a medium, and say which."""
     if look.tau is not None:
@@ -241,102 +173,3 @@ def framed(balls: Metaballs, width: int, height: int) -> Camera:
     lower = (balls.centers - balls.radii[:, None]).min(axis=0)
     upper = (balls.centers + balls.radii[:, None]).max(axis=0)
     return frame(lower, upper, width=width, height=height)
-
-
-def draw_layers(
-    layers: Sequence[Layer],
-    camera: AnyCamera,
-    suns: tuple[Sun, ...],
-    background: Any,
-    *,
-    tolerance: float = 0.0,
-    seed: int = 0,
-    observe: Observer | None = None,
-) -> Picture:
-    """Draw clouds one over the other, the farthest first; each is lit by itself.
-
-    Parameters
-    ----------
-    layers
-        The clouds, farthest first; they cast no shadows on each other.
-    camera
-        The eye.
-    suns
-        The lights.
-    background
-        As `render`.
-    tolerance
-        Largest error of a channel; every layer gets an equal share.
-    seed, observe
-        As `render`.
-
-    Returns
-    -------
-    The picture.
-    """
-    seconds: dict[str, float] = {}
-    clock = _Clock(seconds)
-    behind = _painted(background, camera, suns)
-    clock.stop("sky")
-    skipped: list[Skipped] = []
-    rgba = np.zeros((camera.height, camera.width, 4))
-    if behind is not None:
-        rgba[..., :3], rgba[..., 3] = behind, 1.0
-    for layer in layers:
-        lit = sunward(
-            layer.balls, suns, medium=layer.medium, look=layer.look, observe=observe
-        )
-        clock.stop("light")
-        rgba, rows = eyeward(
-            lit,
-            camera,
-            background=None if behind is None else rgba[..., :3],
-            haze=layer.haze,
-            tolerance=tolerance / len(layers),
-            seed=seed,
-            observe=observe,
-        )
-        skipped += rows
-        clock.stop("eye")
-    skipped = list(merged(skipped))
-    alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
-    return Picture(rgba[..., :3], alpha, tuple(skipped), seconds)
-
-
-def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
-    """Add up the rows of several layers that say the same; errors add up at most."""
-    sums: dict[tuple[str, str], Skipped] = {}
-    for row in rows:
-        key = row.stage, row.what
-        old = sums.get(key, Skipped(*key, 0, 0))
-        sums[key] = Skipped(
-            *key, old.skipped + row.skipped, old.of + row.of, old.bound + row.bound
-        )
-    return tuple(sums.values())
-
-
-class _Clock:
-    """Adds the time since the last stop to a stage."""
-
-    def __init__(self, seconds: dict[str, float]) -> None:
-        self.seconds = seconds
-        self.since = time.perf_counter()
-
-    def stop(self, stage: str) -> None:
-        now = time.perf_counter()
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self.since
-        self.since = now
-
-
-def _painted(background: Any, camera: AnyCamera, suns: tuple[Sun, ...]) -> Array | None:
-    """Give what stands behind the clouds, (H, W, 3), or None for nothing."""
-    if isinstance(background, str):
-        return None
-    if isinstance(background, Sky):
-        return clear_sky(camera, background, suns=suns)
-    shape = (camera.height, camera.width, 3)
-    background = np.asarray(background)
-    if background.shape not in (shape, (3,)):
-        expected = f"shape {shape}, that of the picture"
-        raise ValueError(complaint("background", expected, f"shape {background.shape}"))
-    return np.broadcast_to(background, shape)

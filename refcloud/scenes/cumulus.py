@@ -10,19 +10,14 @@ import numpy as np
 
 from refcloud.camera import Camera
 from refcloud.cloudmap import generate
+from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Haze, Look, named
 from refcloud.metaballs import approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium
-from refcloud.render import (
-    SUN,
-    Layer,
-    Model,
-    Scene,
-    View,
-    draw_layers,
-)
+from refcloud.render import SUN
+from refcloud.scene import Model, Scene, View, enter
 from refcloud.sky import Sky
 
 # The cloud: its seed was chosen by eye among 24, as was the turn.
@@ -109,4 +104,4 @@ def camera(view: View) -> Camera:
     return Camera(np.array(EYE), np.array(TARGET), width=view.width, height=view.height)
 
 
-SCENE = Scene("cumulus", "a cumulus over a field of small clouds", model, draw)
+enter(Scene("cumulus", "a cumulus over a field of small clouds", model, draw))

@@ -20,12 +20,14 @@ import numpy as np
 
 from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid, generate
+from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import WHOLE_SPHERE
 from refcloud.image import Picture
 from refcloud.lighting import named
 from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
-from refcloud.render import Layer, Model, Scene, View, draw_layers, framed
+from refcloud.render import framed
+from refcloud.scene import Model, Scene, View, enter
 from refcloud.scenes import cumulus
 from refcloud.sky import Sky
 
@@ -122,27 +124,14 @@ def _draw(
     )
 
 
-SCENES = (
-    Scene("man-04", "figure 4: the cloud map", voxel_model, draw_front),
-    *(
-        Scene(
-            f"man-{figure:02}",
-            f"figure {figure}: the map as {count} balls",
-            partial(cluster_model, count),
-            draw_front,
-        )
-        for figure, count in ((8, 1000), (9, 100), (10, 30))
-    ),
-    Scene(
-        "man-13",
-        "figure 13: isotropic scattering",
-        shading_model,
-        partial(draw_behind, medium=ISOTROPIC),
-    ),
-    Scene(
-        "man-14",
-        "figure 14: anisotropic scattering",
-        shading_model,
-        partial(draw_behind, medium=FORWARD),
-    ),
-)
+enter(Scene("man-04", "figure 4: the cloud map", voxel_model, draw_front))
+for figure, count in ((8, 1000), (9, 100), (10, 30)):
+    title = f"figure {figure}: the map as {count} balls"
+    enter(Scene(f"man-{figure:02}", title, partial(cluster_model, count), draw_front))
+for figure, how, medium in (
+    (13, "isotropic", ISOTROPIC),
+    (14, "anisotropic", FORWARD),
+):
+    title = f"figure {figure}: {how} scattering"
+    against = partial(draw_behind, medium=medium)
+    enter(Scene(f"man-{figure}", title, shading_model, against))
