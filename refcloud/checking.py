@@ -20,14 +20,17 @@ from typing import Annotated, Any, Literal, ParamSpec, TypeVar
 import numpy as np
 
 from refcloud.conventions import Array, MayBeNotFinite, Range, Shape
+from refcloud.refusal import (
+    advice,
+    complaint,
+    describe,
+    digits,
+    kind_name,
+    unit_of,
+)
 
 P = ParamSpec("P")
 Result = TypeVar("Result")
-
-
-def complaint(name: str, expected: str, got: str, advice: str = "") -> str:
-    """Word a refusal: the argument, what was expected, what came, what to do."""
-    return f"{name}: expected {expected}, got {got}" + (f"; {advice}" if advice else "")
 
 
 def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None) -> Any:
@@ -76,7 +79,7 @@ def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None)
         return _check_tuple(name, value, typing.get_args(hint), sizes)
     if hint in (int, float):
         return _check_number(name, value, hint, None)
-    if hint is Array:
+    if hint == Array:
         return _check_array(name, value, None, None, sizes, finite=True)
     kind = origin or hint
     if kind is Callable or hint is Callable:
@@ -84,7 +87,7 @@ def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None)
     if hint is None or hint is type(None):
         kind = type(None)
     if isinstance(kind, type) and not isinstance(value, kind):
-        raise TypeError(complaint(name, _kind_name(kind), _describe(value)))
+        raise TypeError(complaint(name, kind_name(kind), describe(value)))
     return value
 
 
@@ -105,13 +108,13 @@ def _check_number(name: str, value: Any, base: type, limits: Range | None) -> An
     whole = base is int
     expected = "a whole number" if whole else "a finite number"
     if limits is not None:
-        expected += f" in {limits}" + _unit(limits)
+        expected += f" in {limits}" + unit_of(limits)
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
-        raise TypeError(complaint(name, expected, _describe(value)))
+        raise TypeError(complaint(name, expected, describe(value)))
     if whole and not isinstance(value, numbers.Integral):
-        raise TypeError(complaint(name, expected, _describe(value)))
+        raise TypeError(complaint(name, expected, describe(value)))
     real: Any = value
     try:
         number = operator.index(real) if whole else float(real)
@@ -120,7 +123,7 @@ def _check_number(name: str, value: Any, base: type, limits: Range | None) -> An
     if not whole and not math.isfinite(number):
         raise ValueError(complaint(name, expected, f"{number}"))
     if limits is not None and not limits.holds(number):
-        raise ValueError(complaint(name, expected, f"{number:g}", _advice(limits)))
+        raise ValueError(complaint(name, expected, digits(number), advice(limits)))
     return number
 
 
@@ -138,7 +141,7 @@ def _check_array(
     except ValueError:
         raise ValueError(complaint(name, expected, "rows of unequal length")) from None
     if array.dtype.kind not in "iuf" and not (array.size == 0 and array.ndim == 1):
-        raise TypeError(complaint(name, expected + " of numbers", _describe(value)))
+        raise TypeError(complaint(name, expected + " of numbers", describe(value)))
     if shape is not None and not shape.fits(array.shape, sizes):
         known = {k: v for k, v in sizes.items() if k in shape.axes and k != "..."}
         where = ", ".join(f"{k} = {v}" for k, v in known.items())
@@ -156,9 +159,9 @@ def _check_array(
         raise ValueError(
             complaint(
                 name,
-                f"numbers in {limits}" + _unit(limits),
+                f"numbers in {limits}" + unit_of(limits),
                 f"{low:g} to {high:g}",
-                _advice(limits),
+                advice(limits),
             )
         )
     array.flags.writeable = False
@@ -168,7 +171,7 @@ def _check_array(
 def _check_choice(name: str, value: Any, choices: tuple[Any, ...]) -> Any:
     if not isinstance(value, (str, int, float, bool)) or value not in choices:
         expected = "one of " + ", ".join(repr(choice) for choice in choices)
-        raise ValueError(complaint(name, expected, _describe(value)))
+        raise ValueError(complaint(name, expected, describe(value)))
     return value
 
 
@@ -196,7 +199,7 @@ def _check_tuple(
     name: str, value: Any, members: tuple[Any, ...], sizes: dict[str, int]
 ) -> tuple[Any, ...]:
     if not isinstance(value, (tuple, list)):
-        raise TypeError(complaint(name, "a tuple", _describe(value)))
+        raise TypeError(complaint(name, "a tuple", describe(value)))
     if len(members) == 2 and members[1] is Ellipsis:
         members = (members[0],) * len(value)
     if len(members) != len(value):
@@ -207,31 +210,6 @@ def _check_tuple(
         check(f"{name}[{i}]", item, member, sizes)
         for i, (item, member) in enumerate(zip(value, members, strict=True))
     )
-
-
-def _unit(limits: Range) -> str:
-    return "" if limits.unit == "1" else f" ({limits.unit})"
-
-
-def _advice(limits: Range) -> str:
-    return f"choose within {limits}"
-
-
-def _kind_name(kind: Any) -> str:
-    name = getattr(kind, "__name__", str(kind))
-    return {"str": "a text", "bool": "True or False", "Callable": "a function"}.get(
-        name, f"a {name}"
-    )
-
-
-def _describe(value: Any) -> str:
-    """Say what came: a kind and a shape, never an array's contents."""
-    if isinstance(value, np.ndarray):
-        return f"an array of {value.dtype} with shape {value.shape}"
-    if isinstance(value, (str, int, float, bool)) or value is None:
-        text = repr(value)
-        return text if len(text) <= 60 else text[:57] + "..."
-    return f"a {type(value).__name__}"
 
 
 def checked(function: Callable[P, Result]) -> Callable[P, Result]:

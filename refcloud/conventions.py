@@ -60,7 +60,11 @@ class Range:
     def __str__(self) -> str:
         left = "(" if self.open_lower or self.lower == -math.inf else "["
         right = ")" if self.open_upper or self.upper == math.inf else "]"
-        return f"{left}{self.lower:g}, {self.upper:g}{right}"
+        low, high = (
+            str(end) if isinstance(end, int) else f"{end:g}"
+            for end in (self.lower, self.upper)
+        )
+        return f"{left}{low}, {high}{right}"
 
     def holds(self, value: Any) -> bool:
         """Tell whether every element of a finite value lies in the range."""
@@ -89,10 +93,14 @@ class Shape:
             shape = shape[len(shape) - len(axes) :]
         if len(shape) != len(axes):
             return False
-        return all(
-            size == (sizes.setdefault(axis, size) if isinstance(axis, str) else axis)
+        known = dict(sizes)
+        fits = all(
+            size == (known.setdefault(axis, size) if isinstance(axis, str) else axis)
             for axis, size in zip(axes, shape, strict=True)
         )
+        if fits:
+            sizes.update(known)
+        return fits
 
 
 class MayBeNotFinite:

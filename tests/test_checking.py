@@ -76,7 +76,7 @@ def refusal(value: Any, hint: Any, error: Errors = ValueError) -> str:
         (math.nan, int, TypeError, "expected a whole number, got nan"),
         (0, COUNT, ValueError, "a whole number in [1, 9] (balls), got 0"),
         (10, COUNT, ValueError, "got 10; choose within [1, 9]"),
-        (2**63, Seed, ValueError, "expected a whole number in [-9.22337e+18"),
+        (2**63, Seed, ValueError, "expected a whole number in [-9223372036854775808"),
         (10**400, Seed, ValueError, "expected a whole number in"),
         (np.zeros((2, 2)), POINTS, ValueError, ", got shape (2, 2)"),
         (MARK, POINTS, ValueError, "an array of shape (N, 3), got shape ()"),

@@ -15,6 +15,7 @@ LONGEST_FILE = 300
 # From the ground up. A file imports from lower floors and from its own room only.
 FLOORS = (
     ("conventions",),
+    ("refusal",),
     ("checking",),
     ("files",),
     ("noise", "optics", "camera", "image"),
@@ -22,10 +23,12 @@ FLOORS = (
     ("metaballs", "transport"),
     ("raster", "march"),
     ("lighting", "sky"),
+    ("compose", "scene"),
     ("render",),
     ("scenes",),
     ("bench", "studio"),
-    ("cli", "__main__"),
+    ("cli",),
+    ("__main__",),
 )
 LEVEL = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 TOP_OF_GL = LEVEL["lighting"]  # the optional backend may import up to here

@@ -45,7 +45,9 @@ class VoxelGrid:
                 "upper: expected above lower on every axis,"
                 f" got {tuple(self.lower)} to {tuple(self.upper)}"
             )
-        if not np.all(np.isfinite(self.upper - self.lower)):
+        with np.errstate(over="ignore"):
+            size = self.upper - self.lower
+        if not np.all(np.isfinite(size)):
             raise ValueError("upper: expected a box of finite size, got one too large")
 
 
@@ -63,6 +65,8 @@ def cell_size(grid: VoxelGrid) -> Array:
     Returns
     -------
     Shape (3,), in x, y, z, scene units.
+
+    Source: paper M, section 3 (V04).
 
     Examples
     --------
@@ -86,6 +90,8 @@ def cell_centres(grid: VoxelGrid) -> tuple[Array, Array, Array]:
     Returns
     -------
     x of shape (W,), y of shape (H,), z of shape (D,), scene units.
+
+    Source: paper M, section 3 (V04); design.md, section 4.
 
     Examples
     --------

@@ -158,8 +158,8 @@ def _scaled(points: Array) -> tuple[Array, Array, float]:
 def _nearest(points: Array, centers: Array) -> Labels:
     """Find the nearest centre of each point, lowest number first, in float32."""
     # The largest x.c - |c|^2/2 is the nearest. Three products and sums on blocks that
-    # stay in the cache; a matrix product of so few columns gains nothing, starts
-    # threads that wait for each other, and may differ in last bits between machines.
+    # stay in the cache. A matrix product may be faster, or many times slower where
+    # its threads wait for each other, and differs in last bits between machines.
     rows, columns = points.astype(np.float32), centers.astype(np.float32)
     half = (0.5 * np.square(centers).sum(axis=1)).astype(np.float32)
     step = max(1, BLOCK // max(1, len(centers)))

@@ -1,0 +1,54 @@
+"""How a refusal is worded: the argument, what was expected, what came, what to do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from refcloud.conventions import Range
+
+
+def complaint(name: str, expected: str, got: str, advice: str = "") -> str:
+    """Word a refusal: the argument, what was expected, what came, what to do."""
+    return f"{name}: expected {expected}, got {got}" + (f"; {advice}" if advice else "")
+
+
+def digits(number: float) -> str:
+    """Write a number; a whole one in full as long as a line holds it."""
+    if isinstance(number, int):
+        # Python refuses to write whole numbers of thousands of digits.
+        return (
+            str(number) if number.bit_length() < 200 else "a number of over 60 digits"
+        )
+    return f"{number:g}"
+
+
+def unit_of(limits: Range) -> str:
+    """Name a range's unit behind it, if it has one."""
+    return "" if limits.unit == "1" else f" ({limits.unit})"
+
+
+def advice(limits: Range) -> str:
+    """Say what to do."""
+    return f"choose within {limits}"
+
+
+def kind_name(kind: Any) -> str:
+    """Name a kind of value."""
+    name = getattr(kind, "__name__", str(kind))
+    return {"str": "a text", "bool": "True or False", "Callable": "a function"}.get(
+        name, f"a {name}"
+    )
+
+
+def describe(value: Any) -> str:
+    """Say what came: a kind and a shape, never an array's contents."""
+    if isinstance(value, np.ndarray):
+        return f"an array of {value.dtype} with shape {value.shape}"
+    if isinstance(value, int) and not isinstance(value, bool):
+        return digits(value)
+    if isinstance(value, (str, float, bool)) or value is None:
+        text = repr(value)
+        return text if len(text) <= 60 else text[:57] + "..."
+    return f"a {type(value).__name__}"
