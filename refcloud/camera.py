@@ -18,12 +18,14 @@ from refcloud.conventions import Array, Positive, Range, Shape, Vector, unit_vec
 __all__ = ["Camera", "OrthographicCamera", "axes", "frame", "project", "rays"]
 
 MOST_PIXELS = 64_000_000
+NARROWEST = 1e-9  # radians: below it neighbouring pixels share one direction
+FARTHEST = 1e150  # pixels and units; a product of two of them is still a number
 Side = Annotated[int, Range(1, MOST_PIXELS, "pixels")]
-Angle = Annotated[
-    float, Range(0.0, math.pi, "radians", open_lower=True, open_upper=True)
-]
+Angle = Annotated[float, Range(NARROWEST, math.pi, "radians", open_upper=True)]
 WORLD_UP = (0.0, 1.0, 0.0)
 FOV_Y = 0.533  # 40 degrees across a 4:3 picture
+FROM_BELOW = (0.0, -0.28, 1.0)  # where `frame` stands, seen from the box
+NEAREST = 1e-6  # of a place's coordinates: what float64 still tells apart from it
 PARALLEL = 1e-12  # squared sine below which `up` gives no direction
 
 
@@ -34,7 +36,8 @@ def _check_view(camera: Camera | OrthographicCamera) -> None:
             f"width: expected at most {MOST_PIXELS / 1e6:.0f} megapixels, got"
             f" {camera.width} x {camera.height}; make the picture smaller"
         )
-    gap = camera.target - camera.eye
+    with np.errstate(over="ignore"):
+        gap = camera.target - camera.eye
     if not np.isfinite(gap).all() or not gap.any():
         raise ValueError(
             "target: expected another place than the eye, got the same or one too far"
@@ -53,7 +56,7 @@ class Camera:
     up
         What is upward in the picture, shape (3,); along the view another axis serves.
     fov_y
-        Vertical field of view, radians, in (0, pi).
+        Vertical field of view, radians, in [1e-9, pi).
     width, height
         Size of the picture, pixels; at most 64 megapixels together.
     """
@@ -162,17 +165,23 @@ def project(
     >>> [round(float(v[0]), 9) for v in project(camera, [[1.0, 0.0, 0.0]])]
     [5.0, 4.0, 4.0, 1.0]
     """
-    offset = (points - camera.eye) @ axes(camera).T
-    depth = -offset[:, 2]
+    # Without a matrix product: the same bits wherever a point stands in the list.
+    ahead = (points - camera.eye).T
+    right, up, back = (
+        axis[0] * ahead[0] + axis[1] * ahead[1] + axis[2] * ahead[2]
+        for axis in axes(camera)
+    )
+    depth = -back
     if isinstance(camera, Camera):
         focal = 0.5 * camera.height / math.tan(0.5 * camera.fov_y)
-        # A ball so near that its scale overflows is no different from one at the eye.
-        in_front = depth > focal / np.finfo(np.float64).max
+        # A point so near that its pixels overflow is no different from one at the eye.
+        aside = np.maximum(np.abs(right), np.abs(up))
+        in_front = depth > np.maximum(aside / FARTHEST, 1.0) * (focal / FARTHEST)
         scale = np.divide(focal, depth, out=np.zeros_like(depth), where=in_front)
     else:
         scale = np.full(len(depth), camera.height / camera.height_of_view)
-    x = 0.5 * camera.width + scale * offset[:, 0]
-    y = 0.5 * camera.height - scale * offset[:, 1]
+    x = 0.5 * camera.width + scale * right
+    y = 0.5 * camera.height - scale * up
     return x, y, depth, scale
 
 
@@ -227,7 +236,8 @@ def frame(
 ) -> Camera:
     """Set up a camera that shows a box from the front, a little from below.
 
-    Formula: the sphere around the box, times margin, fills the narrower field of view
+    Formula: the nearest eye from which every corner, seen margin times as far from
+    the middle of the picture as it is, still shows
 
     Parameters
     ----------
@@ -249,11 +259,15 @@ def frame(
     >>> frame([-1, -1, -1], [1, 1, 1]).target
     array([0., 0., 0.])
     """
-    target = 0.5 * (lower + upper)
-    half = 0.5 * np.abs(upper - lower)
-    aspect = width / height
-    # Half sizes that the view must hold, seen from the front.
-    need_y = max(half[1], half[0] / aspect, half[2] / aspect, 1e-300) * margin
-    distance = need_y / math.tan(0.5 * FOV_Y) + half[2]
-    toward = unit_vector(np.array([0.0, -0.28, 1.0]))
+    target = 0.5 * lower + 0.5 * upper
+    half = 0.5 * upper - 0.5 * lower
+    toward = unit_vector(np.array(FROM_BELOW))
+    right, up, back = axes(Camera(toward, np.zeros(3)))
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    corners = signs * half
+    aside = np.abs(corners @ right) * (height / width)
+    needs = np.maximum(aside, np.abs(corners @ up)) * margin
+    distance = float((corners @ back + needs / math.tan(0.5 * FOV_Y)).max())
+    # A box of hardly any size: the eye must not round onto it.
+    distance = max(distance, NEAREST * float(np.abs(target).max()), 1.0 / FARTHEST)
     return Camera(target + distance * toward, target, width=width, height=height)
