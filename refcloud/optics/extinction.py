@@ -104,10 +104,11 @@ def largest_steady_tau(kappa: Annotated[float, Range(0.0)]) -> float:
     """
     if kappa >= 1.0:
         return 0.0
-    if kappa == 0.0:
-        return math.inf
+    high = math.inf if kappa == 0.0 else 1.0 / kappa
+    if high == math.inf:
+        return high
     # g + T - 1 is convex, 0 at 0, lowest at -ln kappa, and at least 0 at 1 / kappa.
-    low, high = -math.log(kappa), 1.0 / kappa
+    low = -math.log(kappa)
     while True:
         middle = 0.5 * (low + high)
         if middle in (low, high):
