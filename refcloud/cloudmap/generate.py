@@ -14,7 +14,8 @@ from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
 from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
 from refcloud.cloudmap.voxels import MOST_VOXELS, VoxelGrid
 from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
-from refcloud.noise import octave_sum_grid, uniform
+from refcloud.noise import octave_bound, octave_sum_grid, uniform
+from refcloud.noise.weights import PEAKS
 
 Observer = Callable[[str, Any], None]
 Length = Annotated[float, Positive]
@@ -111,13 +112,17 @@ def generate(
     watch = observe or (lambda name, value: None)
     # 1. Lay the grid over the ellipsoids' bounds, on whole multiples of the cell.
     centers = radii = np.zeros((0, 3))
+    room = 0.0
     quadrics: list[Array] = []
     if shape == "cumulus":
         centers, radii = cumulus_ellipsoids(diameters, seed=seed or 0)
-        room = relief + edge
+        # The noise moves the surface no farther than its largest value says.
+        peak = octave_bound(octaves, persistence) * PEAKS[interpolant] ** 3
+        peak = max(peak, 1.0) if normalize == "none" else 1.0
+        room = relief * peak + edge
         lower, upper = (centers - radii).min(axis=0), (centers + radii).max(axis=0)
         lower, upper = lower - room, upper + room
-        lower[1] = -1.0  # the base is flat: nothing lies below -n / 2
+        lower[1] = -peak  # the base is flat: nothing lies below -n / 2
     else:
         quadrics, lower, upper = _ellipsoid_volumes(diameters, ellipsoids, seed or 0)
     (x, y, z), origin = _lattice(lower, upper, voxel)
@@ -139,9 +144,7 @@ def generate(
 
     # 3. Map it into the ellipsoids.
     if shape == "cumulus":
-        depth = depth_inside(
-            x, y, z, centers=centers, radii=radii, least=-relief - edge
-        )
+        depth = depth_inside(x, y, z, centers=centers, radii=radii, least=-room)
         watch("depth", depth)
         density = largest_part(displace(depth, noise, y, relief=relief, edge=edge))
     else:

@@ -15,7 +15,7 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Range, Shape, Vector
 
-# Largest exponent of a radius: its inverse square must stay a finite number.
+# The inverse square of a radius must stay a finite number.
 SMALLEST_RADIUS = 1e-150
 
 
@@ -123,8 +123,8 @@ def evaluate_quadric(
 
 @checked
 def modulate(
-    Q: Array,
-    noise: Annotated[Array, Range(0.0)],
+    Q: Annotated[Array, Shape("...")],
+    noise: Annotated[Array, Shape("..."), Range(0.0)],
     *,
     threshold: Annotated[float, Range(0.0, 1.0, open_upper=True)] = 0.1,
     dynamics: Annotated[float, Range(0.0, 1.0, open_lower=True)] = 1.0,

@@ -38,7 +38,9 @@ def trilinear(grid: VoxelGrid, points: Annotated[Array, Shape("...", 3)]) -> Arr
     array([0.5, 0. , 0. ])
     """
     inside = ((points >= grid.lower) & (points <= grid.upper)).all(axis=-1)
-    x, y, z = np.moveaxis((points - grid.lower) / cell_size(grid) - 0.5, -1, 0)
+    # What lies outside is 0 whatever it is: from here on no number is too large.
+    places = np.clip(points, grid.lower, grid.upper) - grid.lower
+    x, y, z = np.moveaxis(places / cell_size(grid) - 0.5, -1, 0)
     return np.where(inside, clamped_trilinear(grid.density, x, y, z), 0.0)
 
 
