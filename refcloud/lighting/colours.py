@@ -62,7 +62,8 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     gain = _gain(lit)
     for s, sun in enumerate(lit.suns):
         # The sun's light travels along -direction and leaves toward the eye.
-        cos_theta = np.clip(-(toward_eye @ sun.direction), -1.0, 1.0)
+        x, y, z = (toward_eye * sun.direction).T
+        cos_theta = np.clip(-(x + y + z), -1.0, 1.0)
         scattered = phase(medium, cos_theta)[:, None] * medium.albedo_rgb
         colours[:, s] = scattered * lit.light[s] * gain
     colours[:, -1] = lit.ambient

@@ -89,17 +89,21 @@ def eyeward(
     radius = balls.radii * scale
 
     # 2. Leave out what cannot show.
-    visible, skipped = on_screen(x, y, radius, camera)
+    order = depth_order(balls, depth)
+    shown, skipped = on_screen(x, y, radius, camera)
     dark = sum(1 for sun in lit.suns if not sun.irradiance.any())
     if dark:
         skipped.append(Skipped("light", "suns without light", dark, len(lit.suns)))
     sigma_ts = lit.medium.sigma_t_rgb
     tau = np.stack([_eye_depths(lit, float(s), depth) for s in sigma_ts])
     colours = ball_colours(lit, camera)
-    brightest = max(colours.sum(axis=1).max(initial=0.0), pixels.max(initial=0.0))
+    # Alpha counts as a channel: what may change is 1 at least.
+    brightest = max(colours.sum(axis=1).max(initial=1.0), pixels.max())
     if haze is not None:
         brightest = max(brightest, float(haze.color.max()))
-    visible, rows = without_faint(visible, tau.max(axis=0), brightest, tolerance / 2.0)
+    visible, rows = without_faint(
+        order, shown, tau.max(axis=0), brightest, tolerance / 2.0
+    )
     skipped += rows
 
     # 3. Light as a field, and the noise that erodes footprints.
@@ -110,9 +114,11 @@ def eyeward(
     middling = float(np.median(balls.radii)) if len(balls.radii) else 1.0
     cell = look.erosion_cell * middling
     if look.erosion > 0.0 and visible.any():
-        places, reach = balls.centers[visible], balls.radii[visible][:, None]
+        # The faint balls count too: the noise must not change with the tolerance.
+        places = balls.centers[shown]
+        reach = balls.radii[shown][:, None] + RISE * cell
         lower, upper = (places - reach).min(axis=0), (places + reach).max(axis=0)
-        pixel = 1.0 / float(scale[visible].max())
+        pixel = 1.0 / float(scale[shown].max())
         detail = detail_grid(lower, upper, cell=cell, pixel=pixel, seed=seed)
         skipped += detail.skipped
         watch("detail", detail)
@@ -124,12 +130,11 @@ def eyeward(
     air = np.zeros(3) if haze is None else haze.color
 
     # 4. Draw. A grey medium needs one pass, a coloured one three (L12).
-    order = depth_order(balls, depth)
     order = order[visible[order]]
     watch("eye order", order)
     # Behind pixels that let no more than this through, all together changes less than
     # half the tolerance: it is between 0 and the brightest, and is seen through them.
-    least = 0.5 * tolerance / brightest if brightest > 0.0 else 1.0
+    least = 0.5 * tolerance / brightest
     drawn = np.zeros_like(pixels)
     groups = [np.flatnonzero(sigma_ts == s) for s in dict.fromkeys(sigma_ts.tolist())]
     hidden = len(order)

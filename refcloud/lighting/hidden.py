@@ -37,7 +37,11 @@ def on_screen(
 
 
 def without_faint(
-    visible: Mask, tau: Array, brightest: float, tolerance: float
+    order: NDArray[np.intp],
+    visible: Mask,
+    tau: Array,
+    brightest: float,
+    tolerance: float,
 ) -> tuple[Mask, list[Skipped]]:
     """Leave out the faintest balls while their total effect stays in the tolerance.
 
@@ -47,12 +51,14 @@ def without_faint(
 
     Parameters
     ----------
+    order
+        All balls from near to far; of equally faint ones the nearest goes first.
     visible
         Balls still to be drawn, shape (N,).
     tau
         Optical depth on the axis, the largest of the channels, shape (N,).
     brightest
-        Largest colour of balls and background.
+        Largest colour of balls, air and background, and at least an alpha of 1.
     tolerance
         Largest change of a channel.
 
@@ -61,7 +67,7 @@ def without_faint(
     Balls still to be drawn, and the rows of the report.
     """
     effect = -np.expm1(-tau) * brightest
-    candidates = np.flatnonzero(visible)
+    candidates = order[visible[order]]
     ranked = candidates[np.argsort(effect[candidates], kind="stable")]
     total = np.cumsum(effect[ranked])
     faint = ranked[total <= tolerance]

@@ -17,6 +17,7 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.cloudmap.sample import clamped_trilinear
 from refcloud.conventions import Array, Positive, Range, Shape
+from refcloud.lighting.order import depth_order
 from refcloud.metaballs import Metaballs, profile
 
 SPACING = 0.5  # nodes per median radius: no ball of that size falls between nodes
@@ -90,7 +91,8 @@ def light_field(
     first = np.ceil((balls.centers - radii[:, None] - lower) / spacing).astype(int)
     last = np.floor((balls.centers + radii[:, None] - lower) / spacing).astype(int)
     first, last = np.maximum(first, 0), np.minimum(last + 1, [W, H, D])
-    for k in range(len(radii)):
+    # In an order that the input's does not show in: sums round by their order.
+    for k in depth_order(balls, np.zeros(len(radii))):
         (i0, j0, k0), (i1, j1, k1) = first[k], last[k]
         x, y, z = (
             np.square((lower[a] + np.arange(low, high) * spacing - c) / radii[k])

@@ -178,8 +178,13 @@ def handed_on(look: Look, albedo: float, forward: float) -> Callable[[Array], Ar
     return lambda tau: held_share(tau, kappa, limit)
 
 
-def light_camera(balls: Metaballs, direction: Array, side: int) -> OrthographicCamera:
+def light_camera(
+    balls: Metaballs, direction: Array, side: int
+) -> tuple[OrthographicCamera, Array]:
     """Place an orthographic camera at the light so that it sees every ball.
+
+    It looks at the cloud's middle as the origin: a cloud far out in the world is lit
+    along the same direction, to the last bits, as one at home.
 
     Parameters
     ----------
@@ -192,20 +197,21 @@ def light_camera(balls: Metaballs, direction: Array, side: int) -> OrthographicC
 
     Returns
     -------
-    The camera.
+    The camera, and the centres as it counts them, shape (N, 3).
     """
     lower = (balls.centers - balls.radii[:, None]).min(axis=0)
     upper = (balls.centers + balls.radii[:, None]).max(axis=0)
-    middle = 0.5 * (lower + upper)
-    reach = np.sqrt(np.square(balls.centers - middle).sum(axis=1)) + balls.radii
+    centers = balls.centers - 0.5 * (lower + upper)
+    reach = np.sqrt(np.square(centers).sum(axis=1)) + balls.radii
     radius = float(reach.max()) * BORDER
-    return OrthographicCamera(
-        middle + radius * direction,
-        middle,
+    camera = OrthographicCamera(
+        radius * direction,
+        np.zeros(3),
         height_of_view=2.0 * radius,
         width=side,
         height=side,
     )
+    return camera, centers
 
 
 def _carry(
@@ -227,8 +233,8 @@ def _carry(
     on_axis = scatter(tau)  # refuses here, before anything is drawn
 
     # 1. The camera at the light; the buffer filled with white, the unblocked light.
-    camera = light_camera(balls, direction, side)
-    x, y, depth, scale = project(camera, balls.centers)
+    camera, centers = light_camera(balls, direction, side)
+    x, y, depth, scale = project(camera, centers)
     buffer = framebuffer(side, side, color=np.ones(4))
     order = depth_order(balls, depth)
     watch("light order", order)
