@@ -60,10 +60,12 @@ def detail_grid(
     spacing = cell / 2 ** (OCTAVES - 1) / SAMPLES
     while SAMPLES * spacing < pixel:
         spacing *= 2.0
-    while np.prod(np.ceil((upper - lower) / spacing) + 2.0) > MOST_CELLS:
+    while np.prod(np.ceil((upper - lower) / spacing) + 3.0) > MOST_CELLS:
         spacing *= 2.0
-    first = np.floor(lower / spacing)
-    count = (np.floor(upper / spacing) - first + 1.0).astype(int)
+    # From the centre below each corner to the one above: no place in the box is
+    # clamped when the table is sampled.
+    first = np.floor(lower / spacing - 0.5)
+    count = (np.floor(upper / spacing + 0.5) - first + 1.0).astype(int)
     x, y, z = (
         (a + np.arange(n) + 0.5) * (spacing / cell)
         for a, n in zip(first, count, strict=True)
