@@ -75,7 +75,7 @@ def draw_layers(
             layer.balls, suns, medium=layer.medium, look=layer.look, observe=observe
         )
         clock.stop("light")
-        rgba, rows = eyeward(
+        drawn, rows = eyeward(
             lit,
             camera,
             background=None if behind is None else rgba[..., :3],
@@ -84,6 +84,8 @@ def draw_layers(
             seed=seed,
             observe=observe,
         )
+        # Before nothing, this layer covers the ones behind it (eq 28).
+        rgba = drawn if behind is not None else drawn + (1.0 - drawn[..., 3:]) * rgba
         skipped += rows
         clock.stop("eye")
     skipped = list(merged(skipped))
