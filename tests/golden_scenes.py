@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
-from refcloud.image import Picture
+from refcloud import Picture, load_metaballs
 from refcloud.raster import framebuffer, splat
+from refcloud.scenes import SCENES, Model, View
+
+FIXTURES = Path(__file__).parent / "fixtures"
+VIEW = View(192, 144)
 
 
 def blend_fan() -> Picture:
@@ -35,6 +41,29 @@ def blend_fan() -> Picture:
     return Picture(buffer.pixels[..., :3])
 
 
+def fitted(name: str, balls: str) -> Picture:
+    """Draw a scene from stored balls: a fit amplifies what machines differ in."""
+    stored = sorted(FIXTURES.glob(f"{balls}-*.npz"))
+    clouds = {
+        path.stem.removeprefix(f"{balls}-").replace("-", " "): load_metaballs(path)
+        for path in stored
+    }
+    return SCENES[name].draw(Model(clouds), VIEW)
+
+
+def unfitted(name: str) -> Picture:
+    """Draw a scene whose balls come straight from the noise."""
+    scene = SCENES[name]
+    return scene.draw(scene.model(), VIEW)
+
+
 GOLDEN: dict[str, Callable[[], Picture]] = {
     "blend-fan": blend_fan,
+    "cumulus": partial(fitted, "cumulus", "cumulus"),
+    "man-04": partial(unfitted, "man-04"),
+    "man-08": partial(fitted, "man-08", "man-08"),
+    "man-09": partial(fitted, "man-09", "man-09"),
+    "man-10": partial(fitted, "man-10", "man-10"),
+    "man-13": partial(fitted, "man-13", "man-13"),
+    "man-14": partial(fitted, "man-14", "man-13"),
 }
