@@ -1,0 +1,68 @@
+"""What can be drawn: named scenes, metaballs' files and cloud maps' files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from refcloud.cli.generate import describe as described_grid
+from refcloud.cloudmap import VoxelGrid, load_voxels
+from refcloud.cloudmap.file import FORMAT as VOXELS
+from refcloud.files import read_arrays
+from refcloud.metaballs import Metaballs, load_metaballs
+from refcloud.metaballs.file import FORMAT as METABALLS
+from refcloud.refusal import complaint
+from refcloud.scenes import SCENES
+
+ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
+NO_NUMBERS = 1
+
+
+def find(what: str) -> bool:
+    """Tell a scene (True) from a file (False), or refuse what is neither.
+
+    Raises
+    ------
+    ValueError
+        No scene has that name, and it does not look like a file.
+    """
+    if what in SCENES:
+        return True
+    path = Path(what)
+    if path.suffix != ".npz" and not path.exists():
+        expected = "a file (.npz) or one of the scenes " + ", ".join(sorted(SCENES))
+        raise ValueError(complaint("WHAT", expected, repr(what[:60])))
+    return False
+
+
+def load(path: str) -> Metaballs | VoxelGrid:
+    """Load what a file holds, by the kind that it says it is.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        There is no such file, it is damaged, or of another kind.
+    """
+    if _is(VOXELS, path):
+        return load_voxels(path)
+    try:
+        return load_metaballs(path)
+    except ValueError as refusal:
+        if _is(METABALLS, path):
+            raise
+        raise ValueError(f"{refusal}; {VOXELS} files are drawn too") from None
+
+
+def _is(kind: str, path: str) -> bool:
+    """Tell whether a file says that it is of some kind."""
+    try:
+        read_arrays(path, kind, ANY_VERSION, {}, NO_NUMBERS)
+    except ValueError:
+        return False
+    return True
+
+
+def describe(cloud: Metaballs | VoxelGrid) -> str:
+    """Say how many balls or voxels there are."""
+    if isinstance(cloud, VoxelGrid):
+        return described_grid(cloud)
+    return f"{len(cloud)} balls"

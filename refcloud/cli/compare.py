@@ -1,0 +1,84 @@
+"""``refcloud compare``: whether two pictures pass for the same, and where not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from refcloud.cli.docstrings import summary
+from refcloud.cli.options import options_of
+from refcloud.cli.outputs import ready, report, say
+from refcloud.cli.parser import Command
+from refcloud.cli.progress import Stages
+from refcloud.image import (
+    compare_codes,
+    difference_picture,
+    load_picture,
+    read_png,
+)
+from refcloud.refusal import complaint
+
+ABOUT = summary(compare_codes)
+OPTIONS = options_of(compare_codes, without=("a", "b"))
+SHOWING = options_of(difference_picture)
+SUFFIXES = (".png", ".npy")
+SAME, DIFFERENT = 0, 1
+
+
+def command() -> Command:
+    """Give the command's arguments and options."""
+    made = Command(
+        "compare",
+        f"{ABOUT} Ends with status 0 if they do, 1 if not, 2 on bad input.",
+        output="name of a picture of the difference (.png or .npy); by default none",
+    )
+    made.argument("A", "a picture (.png, or .npy of linear light)")
+    made.argument("B", "a picture of the same size")
+    made.group("what passes", "", OPTIONS)
+    made.group("the picture of the difference", "", SHOWING)
+    return made
+
+
+def run(words: Sequence[str]) -> int:
+    """Compare two pictures and give the verdict as exit status."""
+    given = command().parse(words)
+    path = None if given.output is None else ready(given.output, SUFFIXES)
+    stages = Stages()
+    first, second = given.arguments
+    with stages.stage("load"):
+        a, b = codes_of(first), codes_of(second)
+    if a.shape != b.shape:
+        raise ValueError(complaint(second, f"{_size(a)} as {first}", _size(b)))
+    with stages.stage("compare"):
+        found = compare_codes(a, b, **given.of(OPTIONS))
+    if path is not None:
+        with stages.stage("save"):
+            shown = difference_picture(
+                load_picture(first), load_picture(second), **given.of(SHOWING)
+            )
+            shown.save(path, tone="none", dither=False)
+    say("same" if found.same else "different")
+    notes = [
+        f"largest difference: {found.worst} codes",
+        f"pixels off: {100.0 * found.off_share:.4g} %",
+    ]
+    notes += [
+        f"worst pixel: row {row}, column {column}, {off} codes"
+        for row, column, off in found.worst_pixels
+    ]
+    report(notes, (), stages.line(), path)
+    return SAME if found.same else DIFFERENT
+
+
+def codes_of(path: str) -> np.ndarray:
+    """Read a picture's codes; linear light is encoded plainly."""
+    if Path(path).suffix.lower() == ".png":
+        return read_png(path)
+    return load_picture(path).codes(tone="none", dither=False)
+
+
+def _size(codes: np.ndarray) -> str:
+    height, width, channels = codes.shape
+    return f"{width} x {height} pixels of {channels} channels"

@@ -1,0 +1,129 @@
+"""The door of the command line: picks the command, and words every failure."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from types import ModuleType
+
+import numpy as np
+
+import refcloud
+from refcloud.cli.outputs import printable
+from refcloud.refusal import complaint
+
+# Each command is a file of this room, imported when it is asked for.
+COMMANDS = {
+    "generate": "refcloud.cli.generate",
+    "approximate": "refcloud.cli.approximate",
+    "render": "refcloud.cli.render",
+    "compare": "refcloud.cli.compare",
+    "list": "refcloud.cli.scenes",
+}
+BAD_INPUT = 2
+# As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE).
+INTERRUPTED, PIPE_CLOSED = 130, 141
+DEFECT = 70  # EX_SOFTWARE of sysexits.h: not the caller's fault
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and give its exit status.
+
+    0 is success, 1 that compared pictures differ, 2 bad input, 130 an interrupt. A
+    failure is one line on stderr.
+    """
+    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        # What overflows is refused in one line, not warned about.
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            status = _run(words)
+        sys.stdout.flush()
+        return status
+    except SystemExit as end:  # help was printed
+        return _flushed(int(end.code or 0))
+    except BrokenPipeError:
+        _abandon_stdout()
+        return PIPE_CLOSED
+    except KeyboardInterrupt:
+        return _fail(INTERRUPTED, "interrupted")
+    except MemoryError:
+        got = "more than this machine has free"
+        advice = "choose a smaller picture, larger voxels or fewer balls"
+        return _fail(BAD_INPUT, complaint("memory", "what fits", got, advice))
+    except ArithmeticError as error:
+        advice = "choose values nearer to the defaults"
+        expected = "numbers that stay finite"
+        return _fail(BAD_INPUT, complaint("arithmetic", expected, f"{error}", advice))
+    except OSError as error:
+        if error.strerror is None:
+            return _fail(BAD_INPUT, str(error))
+        _abandon_stdout_where_it_failed(error)
+        name = os.fsdecode(error.filename) if error.filename else "output"
+        expected = "to read or write it"
+        return _fail(BAD_INPUT, complaint(name, expected, error.strerror))
+    except (ValueError, TypeError) as error:
+        return _fail(BAD_INPUT, str(error))
+    except Exception as error:
+        kind = type(error).__name__
+        return _fail(DEFECT, f"defect: {kind}: {error}; please report this command")
+
+
+def _run(words: list[str]) -> int:
+    name, *rest = words or [""]
+    if name in ("-h", "--help"):
+        print(_overview())
+        return 0
+    if name == "--version":
+        print(f"refcloud {refcloud.__version__}")
+        return 0
+    if name not in COMMANDS:
+        expected = "one of " + ", ".join(COMMANDS)
+        got = repr(name[:60]) if words else "none"
+        advice = "see refcloud --help"
+        raise ValueError(complaint("command", expected, got, advice))
+    return _module(name).run(rest)
+
+
+def _module(name: str) -> ModuleType:
+    return importlib.import_module(COMMANDS[name])
+
+
+def _overview() -> str:
+    """List the commands with what each of them does."""
+    lines = ["usage: refcloud COMMAND [options]", "", refcloud.__doc__ or "", ""]
+    width = max(map(len, COMMANDS))
+    lines += [f"  {name:{width}}  {_module(name).ABOUT}" for name in COMMANDS]
+    return "\n".join([*lines, "", "refcloud COMMAND --help gives a command's options."])
+
+
+def _fail(status: int, line: str) -> int:
+    """Print one line on stderr, whatever the message holds."""
+    with contextlib.suppress(OSError, ValueError):
+        line = printable("refcloud: " + " ".join(line.split()), sys.stderr)
+        print(line, file=sys.stderr, flush=True)
+    return status
+
+
+def _flushed(status: int) -> int:
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _abandon_stdout()
+        return PIPE_CLOSED
+    return status
+
+
+def _abandon_stdout_where_it_failed(error: OSError) -> None:
+    if error.filename is None:  # printing failed, for instance on a full disk
+        _abandon_stdout()
+
+
+def _abandon_stdout() -> None:
+    """Let the interpreter's last flush go nowhere, since nobody reads any more."""
+    with contextlib.suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)

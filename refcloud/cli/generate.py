@@ -1,0 +1,57 @@
+"""``refcloud generate``: noise to a cloud map, paper M's first program."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from refcloud.cli.docstrings import summary
+from refcloud.cli.options import options_of
+from refcloud.cli.outputs import ready, report
+from refcloud.cli.parser import Command
+from refcloud.cli.progress import Stages
+from refcloud.cloudmap import VoxelGrid, generate, save_voxels
+
+ABOUT = summary(generate)
+OPTIONS = options_of(generate)
+DEFAULTS = {option.name: option.default for option in OPTIONS}
+SUFFIXES = (".npz",)
+
+
+def command() -> Command:
+    """Give the command's options."""
+    made = Command(
+        "generate",
+        ABOUT,
+        output="name of the cloud map (.npz); by default SHAPE-seedSEED-voxels.npz",
+    )
+    made.group("the cloud", "", OPTIONS)
+    return made
+
+
+def run(words: Sequence[str]) -> int:
+    """Generate a cloud map and write its file."""
+    given = command().parse(words)
+    chosen = given.of(OPTIONS)
+    told = {**DEFAULTS, **chosen}
+    name = f"{told['shape']}-seed{told['seed']}-voxels.npz"
+    path = ready(given.named(name), SUFFIXES)
+    stages = Stages()
+    with stages.stage("generate"):
+        grid = generate(**chosen, observe=stages.watch)
+    with stages.stage("save"):
+        save_voxels(grid, path)
+    report([describe(grid)], grid.skipped, stages.line(), path)
+    return 0
+
+
+def describe(grid: VoxelGrid) -> str:
+    """Say how many voxels are occupied, of how many."""
+    cells = " x ".join(str(n) for n in grid.density.shape[::-1])
+    return f"{occupied(grid)} occupied voxels in a grid of {cells}"
+
+
+def occupied(grid: VoxelGrid) -> int:
+    """Count the voxels that hold cloud."""
+    return int(np.count_nonzero(grid.density))

@@ -1,0 +1,76 @@
+"""Outputs: their names are refused before the work, and results are printed after."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TextIO
+
+from refcloud.conventions import Skipped
+from refcloud.refusal import complaint
+
+FLAG = "--output"
+
+
+def ready(path: str | Path, suffixes: tuple[str, ...]) -> Path:
+    """Find out that a file can be written, before any work is done for it.
+
+    Raises
+    ------
+    ValueError
+        The name ends otherwise, is a folder's, or its folder is missing or closed.
+    """
+    path = Path(path)
+    try:
+        _check_place(path, suffixes)
+        _try(path)
+    except OSError as error:
+        expected = "a file that can be written"
+        got = f"{str(path)[:60]} ({error.strerror})"
+        advice = "choose another name or folder"
+        raise ValueError(complaint(FLAG, expected, got, advice)) from None
+    return path
+
+
+def _check_place(path: Path, suffixes: tuple[str, ...]) -> None:
+    if path.is_dir():
+        raise ValueError(complaint(FLAG, "a file's name", f"the folder {path}"))
+    if path.suffix.lower() not in suffixes:
+        expected = "a name ending in " + " or ".join(suffixes)
+        raise ValueError(complaint(FLAG, expected, repr(path.name)))
+    if not path.parent.is_dir():
+        expected = "a name in an existing folder"
+        raise ValueError(complaint(FLAG, expected, f"{path.parent}", "create it first"))
+
+
+def _try(path: Path) -> None:
+    """Make an empty file as the writer will: only trying tells on every system."""
+    probe = path.with_name(f".{path.name}.{os.getpid()}.part")
+    probe.open("xb").close()
+    probe.unlink()
+
+
+def say(line: str) -> None:
+    """Print a line of results; signs that the terminal lacks are escaped."""
+    print(printable(line, sys.stdout))
+
+
+def printable(line: str, stream: TextIO) -> str:
+    """Escape the signs that a stream cannot show, such as those of odd file names."""
+    encoding = stream.encoding or "utf-8"
+    return line.encode(encoding, "backslashreplace").decode(encoding)
+
+
+def report(
+    notes: Iterable[str], skipped: Iterable[Skipped], seconds: str, path: Path | None
+) -> None:
+    """Print what was found, what was skipped, the times, and the file's name."""
+    for line in notes:
+        say(line)
+    for row in skipped:
+        say(str(row))
+    say(seconds)
+    if path is not None:
+        say(str(path))

@@ -1,0 +1,107 @@
+"""``refcloud render``: a cloud or a named scene to a picture, the third program."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+
+from refcloud.cli.clouds import describe, find, load
+from refcloud.cli.docstrings import parameter_texts, summary
+from refcloud.cli.options import Option, options_of
+from refcloud.cli.outputs import ready, report
+from refcloud.cli.parser import Command
+from refcloud.cli.progress import Stages
+from refcloud.cli.setting import (
+    CAMERA,
+    MEDIUM,
+    SUN,
+    backdrop,
+    camera_for,
+    check_size,
+    medium_for,
+    suns_for,
+)
+from refcloud.image import Picture
+from refcloud.render import render
+
+ABOUT = summary(render)
+TEXTS = parameter_texts(render)
+# Savings that stay below one step of an 8-bit picture: nobody sees them in a PNG.
+TOLERANCE = 1.0 / 255.0
+SUFFIXES = (".png", ".npy")
+
+
+def _options() -> tuple[tuple[Option, ...], tuple[Option, ...]]:
+    """Give the options of `render` itself, and its background."""
+    own, behind = [], []
+    for option in options_of(render, without=("cloud",)):
+        if option.name == "background":
+            behind.append(backdrop(option))
+        elif option.name == "tolerance":
+            own.append(dataclasses.replace(option, default=TOLERANCE))
+        else:
+            own.append(option)
+    return tuple(own), tuple(behind)
+
+
+OPTIONS, BACKGROUND = _options()
+SAVING = options_of(Picture.codes)
+
+
+def command() -> Command:
+    """Give the command's argument and options."""
+    made = Command(
+        "render",
+        ABOUT,
+        output="name of the picture (.png, or .npy for linear light); by default"
+        " WHAT.png",
+    )
+    made.argument(
+        "WHAT", "a scene (see refcloud list), metaballs or a cloud map (.npz)"
+    )
+    made.group("the picture", "", OPTIONS)
+    made.group("the camera", TEXTS["camera"], CAMERA)
+    made.group("the light", TEXTS["suns"], SUN)
+    made.group("the cloud's medium", TEXTS["medium"], MEDIUM)
+    made.group("behind the cloud", "", BACKGROUND)
+    made.group("the file", "", SAVING)
+    return made
+
+
+def run(words: Sequence[str]) -> int:
+    """Render a cloud and write its picture."""
+    given = command().parse(words)
+    what = given.arguments[0]
+    is_scene = find(what)
+    chosen = {"tolerance": TOLERANCE, **given.of(OPTIONS), **given.of(BACKGROUND)}
+    size = check_size(chosen)
+    suns = suns_for(given.of(SUN), is_scene)
+    name = what if is_scene else Path(what).stem
+    path = ready(given.named(f"{name}.png"), SUFFIXES)
+    stages = Stages()
+    if is_scene:
+        cloud, notes = what, []
+    else:
+        with stages.stage("load"):
+            cloud = load(what)
+        notes = [f"{what}: {describe(cloud)}"]
+    shown = None if isinstance(cloud, str) else cloud
+    camera = camera_for(given.of(CAMERA), shown, size)
+    medium, note = medium_for(given.of(MEDIUM), shown, chosen.get("look"))
+    with stages.stage("render"):
+        picture = render(
+            cloud,
+            camera=camera,
+            suns=suns,
+            medium=medium,
+            **chosen,
+            observe=stages.watch,
+        )
+    # What the picture knows of its own stages says more than their sum.
+    stages.seconds.pop("render")
+    stages.seconds.update(picture.seconds)
+    with stages.stage("save"):
+        picture.save(path, **given.of(SAVING))
+    report([*notes, *note, *picture.notes], picture.skipped, stages.line(), path)
+    return 0

@@ -1,0 +1,143 @@
+"""Camera, suns, medium and background from options; what is left out is completed.
+
+A file's cloud is there to be framed and measured, so each part may be given alone. A
+scene makes its own choices inside, so a part that it cannot complete is asked for.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+
+from refcloud.camera import Camera
+from refcloud.cli.options import Option, options_of
+from refcloud.cloudmap import VoxelGrid
+from refcloud.conventions import unit_vector
+from refcloud.lighting import named
+from refcloud.metaballs import Metaballs, voxel_balls
+from refcloud.optics import Medium, Sun
+from refcloud.refusal import complaint
+from refcloud.render import SIZES, default_medium, framed, render
+from refcloud.render import SUN as DEFAULT_SUN
+from refcloud.sky import Sky
+
+SKY = "sky"
+CAMERA = options_of(Camera, without=("width", "height"))
+MEDIUM = options_of(Medium)
+SUN = tuple(
+    dataclasses.replace(
+        option,
+        flag="--sun" if option.name == "direction" else option.flag,
+        repeated=True,
+    )
+    for option in options_of(Sun)
+)
+QUALITY = next(o.default for o in options_of(render) if o.name == "quality")
+
+
+def backdrop(option: Option) -> Option:
+    """Let the default sky be asked for by name beside what `render` takes."""
+    return dataclasses.replace(option, kinds=(Literal["sky"], *option.kinds))
+
+
+def check_size(chosen: dict[str, Any]) -> tuple[int, int]:
+    """Give the picture's size, and put the sky in the place of its name.
+
+    Raises
+    ------
+    ValueError
+        The picture is too large; found before any work.
+    """
+    if isinstance(chosen.get("background"), str) and chosen["background"] == SKY:
+        chosen["background"] = Sky()
+    width, height = SIZES[chosen.get("quality", QUALITY)]
+    width, height = chosen.get("width", width), chosen.get("height", height)
+    Camera(np.ones(3), np.zeros(3), width=width, height=height)
+    return width, height
+
+
+def camera_for(
+    given: Mapping[str, Any], cloud: Metaballs | VoxelGrid | None, size: tuple[int, int]
+) -> Camera | None:
+    """Complete the camera from the cloud's frame; None where nothing was given.
+
+    Raises
+    ------
+    ValueError
+        A scene's camera is given in part.
+    """
+    if not given:
+        return None
+    width, height = size
+    if cloud is None:
+        for flag in ("eye", "target"):
+            if flag not in given:
+                expected = f"it beside --{next(iter(given)).replace('_', '-')}"
+                advice = "a scene's camera is given with --eye and --target"
+                raise ValueError(complaint(f"--{flag}", expected, "none", advice))
+        return Camera(**given, width=width, height=height)
+    balls = voxel_balls(cloud) if isinstance(cloud, VoxelGrid) else cloud
+    return dataclasses.replace(framed(balls, width, height), **given)
+
+
+def medium_for(
+    given: Mapping[str, Any],
+    cloud: Metaballs | VoxelGrid | None,
+    look: Literal["cumulus", "man"] | None,
+) -> tuple[Medium | None, tuple[str, ...]]:
+    """Complete the medium from `render`'s own choice; None where nothing was given.
+
+    Returns
+    -------
+    The medium, and what was chosen.
+
+    Raises
+    ------
+    ValueError
+        A scene's medium is given without its extinction.
+    """
+    if not given:
+        return None, ()
+    if "sigma_t" in given:
+        return Medium(**given), ()
+    if cloud is None:
+        expected = f"it beside --{next(iter(given))}"
+        advice = "a scene's medium is given as a whole"
+        raise ValueError(complaint("--sigma-t", expected, "none", advice))
+    balls = voxel_balls(cloud) if isinstance(cloud, VoxelGrid) else cloud
+    medium, note = default_medium(balls, named(look or "cumulus"))
+    return dataclasses.replace(medium, **given), (note,)
+
+
+def suns_for(given: Mapping[str, Any], is_scene: bool) -> tuple[Sun, ...] | None:
+    """Pair directions with irradiances; None where nothing was given.
+
+    Raises
+    ------
+    ValueError
+        Their numbers do not fit, a direction is zero, or a scene's light is given
+        without a direction.
+    """
+    if not given:
+        return None
+    directions = given.get("direction", [])
+    light = given.get("irradiance", [])
+    for direction in directions:
+        unit_vector(direction, "--sun")  # refused by the name that was typed
+    if not directions:
+        if is_scene:
+            advice = "a scene's light is given with its direction"
+            raise ValueError(
+                complaint("--sun", "it beside --irradiance", "none", advice)
+            )
+        directions = [DEFAULT_SUN.direction]
+    if len(light) not in (0, 1, len(directions)):
+        expected = f"one for all or {len(directions)}, one for each --sun"
+        raise ValueError(complaint("--irradiance", expected, f"{len(light)}"))
+    if not light:
+        return tuple(Sun(direction) for direction in directions)
+    light = light * len(directions) if len(light) == 1 else light
+    return tuple(Sun(d, i) for d, i in zip(directions, light, strict=True))

@@ -1,0 +1,171 @@
+"""Bad input: status 2, one line that says what to do, and nothing half-written."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import refcloud.cli.generate
+import refcloud.cli.render
+
+from .conftest import contents
+
+ROOT = Path(__file__).parents[2]
+RENDER = "render balls.npz"
+BAD = {
+    # files
+    "approximate none.npz": "none.npz: expected a refcloud.voxels file, got no such",
+    "approximate folder.npz": "got a folder",
+    "approximate text.npz": r"\.(npz|png): expected a .* \.npz",
+    "approximate truncated.npz": r"\.(npz|png): expected a .* \.npz",
+    "approximate balls.npz": "got format 'refcloud.metaballs'",
+    "approximate flat.npz": r"density of shape \(D, H, W\), got .*\(2, 3\)",
+    "approximate a.png": r"\.(npz|png): expected a .* \.npz",
+    "render none.npz": "got no such file",
+    "render folder.npz": "got a folder",
+    "render text.npz": r"\.(npz|png): expected a .* \.npz",
+    "render truncated.npz": r" \.npz; refcloud.voxels files are drawn too",
+    "render other.npz": "got format 'demo'; refcloud.voxels files are drawn too",
+    "render a.png": r"\.(npz|png): expected a .* \.npz",
+    "render future.npz": "version 1 or older, got version 2; update",
+    "render shape.npz": r"radii of shape \(N.*, got .*\(2, 2\)",
+    "render uneven.npz": r"N = 2.*, got .*\(3,\)",
+    "render negative.npz": r"negative.npz: radii: expected numbers in \(0, inf\)",
+    "render nan.npz": "nan.npz: .*finite numbers, got 6 NaN",
+    "render kernel.npz": "kernel.npz: kernel: expected one of 'wyvill'",
+    "render flat.npz": r"density of shape \(D, H, W\)",
+    # scenes
+    "render cumulos": "WHAT: expected .*cumulus, man-04.*, got 'cumulos'",
+    "render cumulus --eye 0 0 9": "--target: expected it beside --eye",
+    "render cumulus --fov-y 1": "--eye: expected it beside --fov-y",
+    "render cumulus --g 0.5": "--sigma-t: expected it beside --g",
+    "render cumulus --irradiance 1 1 1": "--sun: expected it beside --irradiance",
+    "render cumulus --background sky": "background: expected none beside a scene",
+    "render cumulus --width 1000000 --height 1000000": "at most 64 megapixels",
+    # values
+    "generate --octaves 0": r"--octaves: expected a whole number in \[1, 32\], got 0",
+    "generate --octaves 2.5": "whole number in .*, got '2.5'",
+    "generate --persistence nan": r"finite number in \(0, 1\], got nan",
+    "generate --persistence 1.5": r"--persistence: .*, got 1.5; choose within",
+    "generate --persistence 1/0": "finite number in .*, got '1/0'",
+    "generate --persistence much": "--persistence: .*, got 'much'",
+    "generate --shape cube": "--shape: expected one of 'cumulus', 'ellipsoid', got",
+    "generate --diameters 1 2": "--diameters: expected three numbers, got '1 2'",
+    "generate --diameters 1 2 3 4": "three numbers, got '1 2 3 4'",
+    "generate --diameters 1 b 3": "three numbers, got '1 b 3'",
+    "generate --diameters 1 -2 3": r"numbers in \(0, inf\), got -2 to 3",
+    "generate --diameters 1 inf 3": "--diameters: expected finite numbers",
+    "generate --diameters 1e300 1e300 1e300": "expected",
+    "generate --voxel 1e-9": "voxel: expected a grid of at most .* larger voxel",
+    "generate --voxel -1e-3": r"--voxel: .*, got -0.001",
+    "generate --seed 9223372036854775808": "--seed: expected a whole number in",
+    f"generate --seed {'9' * 400}": "expected",
+    f"{RENDER} --width 0": r"--width: .*\[1, .*, got 0",
+    f"{RENDER} --width 1000000 --height 1000000": "got 1000000 x 1000000; make the",
+    f"{RENDER} --tolerance 2": r"--tolerance: .*\[0, 1\] \(displayed white\), got 2",
+    f"{RENDER} --sun 0 0 0": r"--sun: expected a vector that is not zero",
+    f"{RENDER} --sun 1 0 0 --sun 0 1": "--sun: expected three numbers, got '0 1'",
+    f"{RENDER} --irradiance -1 1 1": "--irradiance: expected numbers in",
+    f"{RENDER} --sun 1 0 0 --irradiance 1 1 1 --irradiance 2 2 2": "got 2",
+    f"{RENDER} --eye 0 0 0 --target 0 0 0": "another place than the eye",
+    f"{RENDER} --up 0 0 0": "up: expected a vector that is not zero",
+    f"{RENDER} --fov-y 4": "--fov-y: .* got 4",
+    f"{RENDER} --sigma-t 1 2": "--sigma-t: expected a number or three numbers",
+    f"{RENDER} --albedo 1.1": r"--albedo: .*\[0, 1\], got 1.1",
+    f"{RENDER} --background blue": "sky or transparent or three numbers, got 'blue'",
+    f"{RENDER} --exposure 0": r"--exposure: .*\(0, 1e\+06\], got 0",
+    # outputs
+    "generate -o no/a.npz": "--output: expected a name in an existing folder, got no",
+    "generate -o a.txt": "--output: expected a name ending in .npz, got 'a.txt'",
+    "generate -o folder.npz": "--output: expected a file's name, got the folder",
+    f"generate -o {'n' * 300}.npz": "--output: expected a file that can be written",
+    "generate -o=": "--output: expected",
+    "approximate voxels.npz -o a.npy": "--output: expected a name ending in .npz",
+    f"{RENDER} -o a.jpg": "--output: expected a name ending in .png or .npy",
+    "compare a.png a.png -o no/d.png": "--output: expected a name in an existing",
+    # pictures
+    "compare a.png none.png": "none.png: ",
+    "compare a.png broken.png": "broken.png: ",
+    "compare a.png voxels.npz": "expected a name ending in .png or .npy",
+    "compare a.png small.png": "small.png: expected 6 x 4 pixels of 3 .*, got 6 x 3",
+    "compare a.png a.png --codes 256": r"--codes: .*\[0, 255\] \(codes\), got 256",
+    # the line itself
+    "": "command: expected one of generate, .*, got none; see refcloud --help",
+    "renter": "command: expected one of .*, got 'renter'",
+    "generate --octave 3": "--octave: .*unknown one; did you mean --octaves?",
+    "generate --zzz 3": "--zzz: .*unknown one; see refcloud generate --help",
+    "generate -z": "-z: expected an option of refcloud generate",
+    "generate --octaves": "--octaves: expected INT, got no value",
+    "generate --octaves --seed 1": "--octaves: expected INT, got no value",
+    "generate -o": "-o: expected FILE, got no value",
+    "generate a.npz": "arguments: expected none, got also 'a.npz'",
+    f"{RENDER} --dither=yes": "--dither.*see refcloud render --help",
+    "render": "WHAT: expected a name, got none; see refcloud render --help",
+    "compare a.png": "B: expected a name, got none",
+    "compare a.png a.png a.png": "arguments: expected 2: A B, got also 'a.png'",
+    "list cumulus": "arguments: expected none, got also 'cumulus'",
+}
+
+
+@pytest.mark.parametrize("line", BAD)
+def test_bad_input_is_refused_in_one_line(line, run, here: Path) -> None:
+    before = contents(here)
+    status, out, err = run(*line.split())
+    assert (status, out) == (2, "")
+    assert err.endswith("\n")
+    assert err.count("\n") == 1
+    assert err.startswith("refcloud: ")
+    assert re.search(BAD[line], err), err
+    assert contents(here) == before
+
+
+@pytest.mark.parametrize(
+    "line", ["render truncated.npz", "generate --persistence 2", "renter", "--zzz"]
+)
+def test_the_program_itself_refuses_in_one_line(line, here: Path) -> None:
+    before = contents(here)
+    done = subprocess.run(
+        [sys.executable, "-m", "refcloud", *line.split()],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("refcloud: ")
+    assert done.stderr.count("\n") == 1
+    assert contents(here) == before
+
+
+def never(*words: object, **options: object) -> None:
+    raise AssertionError("the work began before the output was tried")
+
+
+@pytest.mark.parametrize("name", ["no/a.npz", "a.txt", "folder.npz", "/closed/a.npz"])
+def test_outputs_are_refused_before_the_work(name, run, here, monkeypatch) -> None:
+    monkeypatch.setattr(refcloud.cli.generate, "generate", never)
+    assert run("generate", "-o", name).status == 2
+
+
+def test_a_closed_folder_is_found_before_the_work(run, here, monkeypatch) -> None:
+    def closed(path: Path, mode: str = "r") -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr(refcloud.cli.generate, "generate", never)
+    monkeypatch.setattr(refcloud.cli.render, "render", never)
+    monkeypatch.setattr(Path, "open", closed)
+    for words in (["generate"], ["render", "cumulus"], ["render", "balls.npz"]):
+        status, _, err = run(*words)
+        assert status == 2, err
+        assert "(Permission denied); choose another name or folder" in err
+
+
+def test_a_file_name_may_hold_anything(run, here) -> None:
+    status, _, err = run("render", "a\nb\udcff.npz")
+    assert status == 2
+    assert err.count("\n") == 1

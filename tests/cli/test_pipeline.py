@@ -1,0 +1,187 @@
+"""The three programs in a row give what one Python process gives, to the byte."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refcloud as rc
+
+SMALL = "--diameters 20 11 11 --cell 3 --relief 2 --voxel 1"
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def cloud() -> tuple[rc.VoxelGrid, rc.Metaballs]:
+    grid = rc.generate(diameters=[20, 11, 11], cell=3, relief=2, voxel=1)
+    return grid, rc.approximate(grid, count=40)
+
+
+@pytest.fixture
+def small(cloud, here: Path) -> Path:
+    rc.save_voxels(cloud[0], "small-voxels.npz")
+    rc.save_metaballs(cloud[1], "small.npz")
+    return here
+
+
+def same_bytes(picture: rc.Picture, path: str, **saving: object) -> bool:
+    picture.save("expected.png", **saving)  # pyright: ignore[reportArgumentType]
+    return Path(path).read_bytes() == Path("expected.png").read_bytes()
+
+
+def test_three_programs_equal_one_process(cloud, here: Path) -> None:
+    for line in (
+        f"generate -o a.npz {SMALL}",
+        "approximate a.npz -o b.npz --count 40",
+        "render b.npz -o c.png --width 96 --height 72",
+    ):
+        done = subprocess.run(
+            [sys.executable, "-m", "refcloud", *line.split()],
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.splitlines()[-1] == re.findall(r"-o (\S+)", line)[0]
+    grid, balls = cloud
+    assert rc.load_voxels("a.npz").density.tobytes() == grid.density.tobytes()
+    assert rc.load_metaballs("b.npz").radii.tobytes() == balls.radii.tobytes()
+    assert same_bytes(rc.render(balls, width=96, height=72, tolerance=1 / 255), "c.png")
+
+
+def test_generate_takes_every_option_to_the_library(run, here) -> None:
+    line = (
+        "--shape ellipsoid --seed -3 --diameters 12 8 8 --voxel 1 --octaves 2"
+        " --persistence 1/4 --cell 4 --interpolant quintic --normalize bound"
+        " --threshold 0.05 --dynamics 0.5 --ellipsoids 2"
+    )
+    status, out, err = run("generate", *line.split())
+    assert (status, err) == (0, "")
+    assert out.splitlines()[-1] == "ellipsoid-seed-3-voxels.npz"
+    expected = rc.generate(
+        "ellipsoid",
+        seed=-3,
+        diameters=[12, 8, 8],
+        voxel=1,
+        octaves=2,
+        persistence=0.25,
+        cell=4,
+        interpolant="quintic",
+        normalize="bound",
+        threshold=0.05,
+        dynamics=0.5,
+        ellipsoids=2,
+    )
+    found = rc.load_voxels("ellipsoid-seed-3-voxels.npz")
+    np.testing.assert_array_equal(found.density, expected.density)
+    np.testing.assert_array_equal(found.lower, expected.lower)
+    assert f"{np.count_nonzero(expected.density)} occupied voxels" in out
+
+
+@pytest.mark.parametrize("method", ["quick", "man"])
+def test_approximate_prints_the_errors_of_what_it_wrote(
+    method, cloud, run, small
+) -> None:
+    status, out, err = run(
+        "approximate", "small-voxels.npz", "--count", 20, "--method", method
+    )
+    assert (status, err) == (0, "")
+    name = out.splitlines()[-1]
+    balls = rc.load_metaballs(name)
+    assert name == f"small-{len(balls)}balls.npz"
+    errors = rc.errors_of_fit(cloud[0], balls)
+    assert f"{len(balls)} balls\n" in out
+    assert f"over all voxels: {errors.density:.4f}\n" in out
+    assert f"over occupied voxels: {errors.occupied:.4f}\n" in out
+    x, y, z = errors.projected
+    assert f"optical depth: x {x:.4f}, y {y:.4f}, z {z:.4f}\n" in out
+    assert "seconds: load " in out
+
+
+def test_render_takes_every_option_to_the_library(cloud, run, small) -> None:
+    line = (
+        "--width 40 --height 30 --tolerance 0 --look man --seed 5 --eye 1 -2 40"
+        " --target 1 2 0 --up 0.1 1 0 --fov-y 0.7 --sun -0.6 0.6 0.4"
+        " --sun 1 -1e-1 0 --irradiance 9 8 7 --irradiance 1 2 3 --sigma-t 1 2 3"
+        " --albedo 0.8 --g -0.2 --phase hg --background 0.1 0.2 0.3"
+        " --exposure 0.8 --tone none --no-dither"
+    )
+    status, out, err = run("render", *line.split(), "small.npz", "-osmall.png")
+    assert (status, err) == (0, "")
+    picture = rc.render(
+        rc.load_metaballs("small.npz"),
+        camera=rc.Camera([1, -2, 40], [1, 2, 0], [0.1, 1, 0], 0.7, width=40, height=30),
+        suns=(
+            rc.Sun([-0.6, 0.6, 0.4], [9, 8, 7]),
+            rc.Sun([1, -0.1, 0], [1, 2, 3]),
+        ),
+        medium=rc.Medium([1, 2, 3], 0.8, -0.2, "hg"),
+        background=[0.1, 0.2, 0.3],
+        look="man",
+        seed=5,
+    )
+    assert same_bytes(picture, "small.png", exposure=0.8, tone="none", dither=False)
+    assert "small.npz: 40 balls\n" in out
+    for row in picture.skipped:
+        assert str(row) in out
+    assert re.search(r"seconds: load .*light .*eye .*save .*total", out)
+
+
+def test_parts_that_are_left_out_are_completed(cloud, run, small) -> None:
+    size = ["--width", 24, "--height", 18, "--tolerance", 0]
+    whole = rc.render(cloud[1], width=24, height=18)
+    # The medium's extinction and the camera's target are those of the bare call.
+    bare = run("render", "small.npz", *size, "-o", "a.png")
+    assert same_bytes(whole, "a.png")
+    assert all(note in bare.out for note in whole.notes)
+    part = run("render", "small.npz", *size, "--phase", "rayleigh", "-o", "b.png")
+    assert same_bytes(whole, "b.png")
+    assert "optical depth 40 in the middle" in part.out
+    run("render", "small.npz", *size, "--up", 0, 1, 0, "-o", "c.png")
+    assert same_bytes(whole, "c.png")
+    run("render", "small.npz", *size, "--background", "sky", "-o", "d.png")
+    assert same_bytes(whole, "d.png")
+    run("render", "small.npz", *size, "--background", "transparent", "-o", "e.png")
+    assert rc.load_picture("e.png").alpha is not None
+
+
+def test_a_cloud_map_is_drawn_as_its_voxels(cloud, run, small) -> None:
+    status, out, _ = run(
+        "render", "small-voxels.npz", "--width", 24, "--height", 18, "--look", "man"
+    )
+    assert status == 0
+    assert out.splitlines()[-1] == "small-voxels.png"
+    picture = rc.render(cloud[0], width=24, height=18, look="man", tolerance=1 / 255)
+    assert same_bytes(picture, "small-voxels.png")
+
+
+def test_linear_light_may_be_written(run, small) -> None:
+    assert run("render", "small.npz", "--quality", "quick", "-o", "a.npy").status == 0
+    assert rc.load_picture("a.npy").linear.shape == (240, 320, 3)
+
+
+def test_a_scene_takes_camera_and_size(run, here, monkeypatch) -> None:
+    seen = {}
+    scene = rc.scenes.SCENES["man-10"]
+
+    def draw(model, view):
+        seen["view"] = view
+        return rc.Picture(np.zeros((view.height, view.width, 3)))
+
+    quick = type(scene)("quick", "a scene for this test", scene.model, draw)
+    monkeypatch.setitem(rc.scenes.SCENES, "quick", quick)
+    line = "render quick --eye 0 0 50 --target 0 0 0 --width 9 --height 5"
+    status, out, err = run(*line.split())
+    assert (status, err) == (0, "")
+    assert out.splitlines()[-1] == "quick.png"
+    assert "30 balls" in out
+    view = seen["view"]
+    assert (view.width, view.height, view.tolerance) == (9, 5, 1 / 255)
+    np.testing.assert_array_equal(view.camera.eye, [0, 0, 50])
