@@ -202,7 +202,7 @@ def _skipped(work: Work, fit: Fit, count: int) -> tuple[Skipped, ...]:
         )
     below = fit.heights[fit.heights <= 0.0]
     if len(below):
-        bound = work.peak * float(-below.sum())
+        bound = work.peak * abs(float(below.sum()))
         rows.append(
             Skipped("approximate", "balls of no density", len(below), count, bound)
         )

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Range, Skipped
@@ -38,7 +39,7 @@ def prune(
     -------
     The balls kept, in their order, with a row of ``skipped`` where any are dropped.
 
-    Source: not in the papers; W01's hero needs it.
+    Source: look.md, section 1 (floating beads).
 
     Examples
     --------
@@ -54,7 +55,7 @@ def prune(
     dropped = total - int(kept.sum())
     if not dropped:
         return balls
-    bound = float(balls.densities[~kept].sum())
+    bound = _overlapping(balls, ~kept)
     row = Skipped("prune", "balls that float alone", dropped, total, bound)
     return replace(
         balls,
@@ -63,6 +64,19 @@ def prune(
         densities=balls.densities[kept],
         skipped=(*balls.skipped, row),
     )
+
+
+def _overlapping(balls: Metaballs, chosen: NDArray[np.bool_]) -> float:
+    """Bound the density that chosen balls have together at any point.
+
+    All balls that cover a point overlap each other, so that none of them overlaps less.
+    """
+    c, R, density = balls.centers[chosen], balls.radii[chosen], balls.densities[chosen]
+    most = 0.0
+    for center, radius in zip(c, R, strict=True):
+        near = np.sqrt(np.square(c - center).sum(axis=1)) <= R + radius
+        most = max(most, float(density[near].sum()))
+    return most
 
 
 def neighbour_distance(centers: Array, neighbour: int) -> Array:
