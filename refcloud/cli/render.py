@@ -17,9 +17,10 @@ from refcloud.cli.setting import (
     MEDIUM,
     SUN,
     backdrop,
+    background_for,
     camera_for,
-    check_size,
     medium_for,
+    size_for,
     suns_for,
 )
 from refcloud.image import Picture
@@ -74,8 +75,9 @@ def run(words: Sequence[str]) -> int:
     given = command().parse(words)
     what = given.arguments[0]
     is_scene = find(what)
-    chosen = {"tolerance": TOLERANCE, **given.of(OPTIONS), **given.of(BACKGROUND)}
-    size = check_size(chosen)
+    behind = background_for(given.of(BACKGROUND))
+    chosen = {"tolerance": TOLERANCE, **given.of(OPTIONS), **behind}
+    size = size_for(chosen)
     suns = suns_for(given.of(SUN), is_scene)
     name = what if is_scene else Path(what).stem
     path = ready(given.named(f"{name}.png"), SUFFIXES)

@@ -43,16 +43,22 @@ def backdrop(option: Option) -> Option:
     return dataclasses.replace(option, kinds=(Literal["sky"], *option.kinds))
 
 
-def check_size(chosen: dict[str, Any]) -> tuple[int, int]:
-    """Give the picture's size, and put the sky in the place of its name.
+def background_for(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Put the default sky in the place of its name."""
+    return {
+        name: Sky() if isinstance(value, str) and value == SKY else value
+        for name, value in given.items()
+    }
+
+
+def size_for(chosen: Mapping[str, Any]) -> tuple[int, int]:
+    """Give the picture's width and height.
 
     Raises
     ------
     ValueError
         The picture is too large; found before any work.
     """
-    if isinstance(chosen.get("background"), str) and chosen["background"] == SKY:
-        chosen["background"] = Sky()
     width, height = SIZES[chosen.get("quality", QUALITY)]
     width, height = chosen.get("width", width), chosen.get("height", height)
     Camera(np.ones(3), np.zeros(3), width=width, height=height)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import values_for
 
@@ -26,6 +26,7 @@ OPTIONS = [
     *compare.OPTIONS,
     *compare.SHOWING,
 ]
+EACH = 25  # of each option; about 45 options share what is tested
 TYPED = [option for option in OPTIONS if not option.is_switch]
 
 
@@ -43,6 +44,7 @@ def command_with(option: Option) -> Command:
 
 
 @pytest.mark.parametrize("option", TYPED, ids=lambda option: option.flag)
+@settings(max_examples=EACH)
 @given(data=st.data())
 def test_every_value_comes_back(option: Option, data) -> None:
     kind = data.draw(st.sampled_from(option.kinds))
@@ -60,6 +62,7 @@ def test_every_value_comes_back(option: Option, data) -> None:
 
 
 @pytest.mark.parametrize("option", TYPED, ids=lambda option: option.flag)
+@settings(max_examples=EACH)
 @given(text=st.text(st.sampled_from("0123456789.e-+/naif \t\n%é_"), max_size=12))
 def test_other_words_are_refused_by_the_option_s_name(option: Option, text) -> None:
     said = ""
