@@ -16,10 +16,7 @@ Grid = Sequence[Sequence[Sequence[float]]]  # [z][y][x]
 
 def product(a: Sequence[Point], b: Sequence[Point]) -> list[list[float]]:
     """Multiply two 3 by 3 matrices."""
-    return [
-        [sum(row[k] * b[k][j] for k in range(3)) for j in range(3)]
-        for row in a
-    ]
+    return [[sum(row[k] * b[k][j] for k in range(3)) for j in range(3)] for row in a]
 
 
 def rotation(turn: float, tilt: float, roll: float) -> list[list[float]]:
@@ -96,10 +93,15 @@ def trilinear(density: Grid, lower: Point, upper: Point, point: Point) -> float:
 
 
 def clamped_trilinear(density: Grid, at: Point) -> float:
-    """Sample a grid at one place in cells: the eight centres around it, weighted."""
+    """Sample a grid at one place in cells."""
     counts = len(density[0][0]), len(density[0]), len(density)
+    return sum(weight * density[k][j][i] for i, j, k, weight in corners(counts, at))
+
+
+def corners(counts: Sequence[int], at: Point) -> list[tuple[int, int, int, float]]:
+    """List the eight centres around a place in cells, and what each one weighs."""
+    found = []
     at = [min(max(c, 0.0), n - 1.0) for c, n in zip(at, counts, strict=True)]
-    total = 0.0
     for corner in range(8):
         cell, weight = [], 1.0
         for axis in range(3):
@@ -107,9 +109,8 @@ def clamped_trilinear(density: Grid, at: Point) -> float:
             upward = corner >> axis & 1
             cell.append(min(low + upward, counts[axis] - 1))
             weight *= at[axis] - low if upward else 1.0 - (at[axis] - low)
-        i, j, k = cell
-        total += weight * density[k][j][i]
-    return total
+        found.append((cell[0], cell[1], cell[2], weight))
+    return found
 
 
 def largest_part(density: Grid) -> list[list[list[float]]]:

@@ -77,7 +77,7 @@ def scattered_man2003(tau: float, kappa: float, *, gain: str = "hold") -> float:
     """Give g / I of eq 26, held where g + T would pass 1 (E23)."""
     if gain == "refuse" and tau > largest_steady_tau(kappa):
         raise ValueError("tau: eq 26 and 27 would make light")
-    return min(kappa * tau, 1.0 - math.exp(-tau))
+    return min(kappa * tau, -math.expm1(-tau))
 
 
 def scattered_split(tau: float, forward: float) -> float:
