@@ -13,11 +13,18 @@ from typing import Annotated
 import numpy as np
 
 from refcloud.checking import check_fields, checked
-from refcloud.conventions import Array, Positive, Range, Shape, Vector, unit_vector
+from refcloud.conventions import (
+    MOST_PIXELS,
+    Array,
+    Positive,
+    Range,
+    Shape,
+    Vector,
+    unit_vector,
+)
 
 __all__ = ["Camera", "OrthographicCamera", "axes", "frame", "project", "rays"]
 
-MOST_PIXELS = 64_000_000
 NARROWEST = 1e-9  # radians: below it neighbouring pixels share one direction
 FARTHEST = 1e150  # pixels and units; a product of two of them is still a number
 Side = Annotated[int, Range(1, MOST_PIXELS, "pixels")]
@@ -29,15 +36,19 @@ NEAREST = 1e-6  # of a place's coordinates: what float64 still tells apart from 
 PARALLEL = 1e-12  # squared sine below which `up` gives no direction
 
 
-def _check_view(camera: Camera | OrthographicCamera) -> None:
-    check_fields(camera)
-    if camera.width * camera.height > MOST_PIXELS:
+def refuse_large(width: int, height: int) -> None:
+    """Refuse a picture of over 64 megapixels, before anything is made for it."""
+    if width * height > MOST_PIXELS:
         raise ValueError(
             f"width: expected at most {MOST_PIXELS / 1e6:.0f} megapixels, got"
-            f" {camera.width} x {camera.height}; make the picture smaller"
+            f" {width} x {height}; make the picture smaller"
         )
-    with np.errstate(over="ignore"):
-        gap = camera.target - camera.eye
+
+
+def _check_view(camera: Camera | OrthographicCamera) -> None:
+    check_fields(camera)
+    refuse_large(camera.width, camera.height)
+    gap = camera.target - camera.eye
     if not np.isfinite(gap).all() or not gap.any():
         raise ValueError(
             "target: expected another place than the eye, got the same or one too far"

@@ -108,6 +108,7 @@ class MayBeNotFinite:
 
 
 WHOLE_SPHERE = 4.0 * math.pi  # steradians
+MOST_PIXELS = 64_000_000  # 1.5 GB of float64 RGB: larger pictures are refused
 
 Positive = Range(0.0, open_lower=True)
 Seed = Annotated[int, Range(-(2**63), 2**63 - 1)]

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from refcloud.camera import Camera, OrthographicCamera, frame
+from refcloud.camera import Camera, OrthographicCamera, frame, refuse_large
 from refcloud.checking import checked, complaint
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import Layer, draw_layers
@@ -85,8 +85,8 @@ def render(
         What the cloud is made of; None sets sigma_t so that the optical depth through
         the cloud's middle is 40.
     background
-        A sky, one colour, a picture of the camera's size, or "transparent"; None for
-        the default sky. Scenes bring their own.
+        A sky, one colour, or "transparent"; None for the default sky. Or a picture of
+        the camera's size, shape (H, W, 3). Scenes bring their own.
     haze
         Air in front of the cloud; None for none. Scenes bring their own.
     look
@@ -115,6 +115,7 @@ def render(
     width, height = width or size[0], height or size[1]
     if isinstance(cloud, str):
         scene = find_scene(cloud)
+        refuse_large(width, height)  # before the clouds are made
         if background is not None or haze is not None:
             raise ValueError(
                 complaint("background", "none beside a scene's name", "one or haze")
@@ -161,7 +162,9 @@ def default_medium(balls: Metaballs, look: Look) -> tuple[Medium, str]:
         medium = Medium(1.0, ALBEDO_MAN2003)
         return medium, f"medium: tau {look.tau:g} for every ball, albedo 0.9"
     per_unit = through_the_middle(balls, 1.0)
-    sigma_t = THICKNESS / per_unit if per_unit > THICKNESS / 1e300 else 1.0
+    if not per_unit > THICKNESS / 1e300:
+        return Medium(1.0), "medium: sigma_t 1, since the cloud's middle is empty"
+    sigma_t = THICKNESS / per_unit
     note = f"medium: sigma_t {sigma_t:.4g}, optical depth {THICKNESS:g} in the middle"
     return Medium(sigma_t), note
 

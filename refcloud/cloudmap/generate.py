@@ -13,12 +13,14 @@ from refcloud.cloudmap.connected import largest_part
 from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
 from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
 from refcloud.cloudmap.voxels import MOST_VOXELS, VoxelGrid
-from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
+from refcloud.conventions import Array, Range, Seed, Shape, Skipped
 from refcloud.noise import octave_bound, octave_sum_grid, uniform
 from refcloud.noise.weights import PEAKS
 
 Observer = Callable[[str, Any], None]
-Length = Annotated[float, Positive]
+# Lengths whose squares and inverse squares stay finite numbers.
+SIZE = Range(1e-100, 1e100, "scene units")
+Length = Annotated[float, SIZE]
 
 # What each shape takes where the caller says nothing: diameters, voxel edge, cell of
 # the coarsest octave. "ellipsoid" gives the paper's 11,000 voxels with t = 0.1.
@@ -34,7 +36,7 @@ def generate(
     shape: Literal["cumulus", "ellipsoid"] = "cumulus",
     *,
     seed: Seed | None = 0,
-    diameters: Annotated[Array, Shape(3), Positive] | None = None,
+    diameters: Annotated[Array, Shape(3), SIZE] | None = None,
     voxel: Length | None = None,
     octaves: Annotated[int, Range(1, 32)] = 4,
     persistence: Annotated[float, Range(0.0, 1.0, open_lower=True)] = 0.5,

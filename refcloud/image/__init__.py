@@ -8,7 +8,6 @@ from refcloud.image.difference import (
     root_mean_square,
 )
 from refcloud.image.encode import (
-    MOST_PIXELS,
     quantize,
     srgb_decode,
     srgb_encode,
@@ -19,7 +18,6 @@ from refcloud.image.picture import Picture, load_picture
 from refcloud.image.png import read_png, write_png
 
 __all__ = [
-    "MOST_PIXELS",
     "Comparison",
     "Picture",
     "compare_codes",

@@ -19,7 +19,6 @@ Tone = Literal["shoulder", "none"]
 Exposure = Annotated[float, Range(0.0, 1e6, "1", open_lower=True)]
 Unit = Annotated[Array, Shape("..."), Range(0.0, 1.0)]
 
-MOST_PIXELS = 64_000_000  # 1.5 GB of float64 RGB: larger pictures are refused
 WHITE = 255  # the largest code
 # Where the straight piece and the power of sRGB meet. The standard's own rounded
 # 0.0031308 leaves a step of -3e-8 there, so that the curve would not be monotone.

@@ -168,9 +168,13 @@ def _read_npy(path: Path) -> Array:
     try:
         stored = np.load(path, mmap_mode="r", allow_pickle=False)
     except FileNotFoundError:
-        raise FileNotFoundError(f"{path}: no such file") from None
+        raise FileNotFoundError(
+            f"{path}: expected a picture, got no such file"
+        ) from None
     except Exception:  # the reader names damage by many types
-        raise ValueError(f"{path}: not an .npy file of numbers, or damaged") from None
+        raise ValueError(
+            f"{path}: expected a picture as .npy, got another or a damaged file"
+        ) from None
     shape = getattr(stored, "shape", ())
     if len(shape) != 3 or shape[2] not in (3, 4) or stored.dtype.kind not in "iuf":
         expected = "numbers of shape (H, W, 3) or (H, W, 4)"

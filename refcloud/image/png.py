@@ -18,8 +18,9 @@ import numpy as np
 from PIL import Image
 
 from refcloud.checking import checked, complaint
+from refcloud.conventions import MOST_PIXELS
 from refcloud.files import write_atomically
-from refcloud.image.encode import MOST_PIXELS, Codes
+from refcloud.image.encode import Codes
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 MOST_BYTES = 5 * MOST_PIXELS  # RGBA that does not compress, and some
@@ -94,12 +95,18 @@ def read_png(path: str | Path) -> Codes:
     """
     try:
         if os.path.getsize(path) > MOST_BYTES:
-            raise ValueError(f"{path}: larger than any picture of {MOST_PIXELS} pixels")
+            raise ValueError(
+                f"{path}: expected at most {MOST_BYTES} bytes, got a larger file"
+            )
         data = Path(path).read_bytes()
     except FileNotFoundError:
-        raise FileNotFoundError(f"{path}: no such file") from None
+        raise FileNotFoundError(
+            f"{path}: expected a picture, got no such file"
+        ) from None
     except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+        raise ValueError(
+            f"{path}: expected a readable file, got: {error.strerror}"
+        ) from None
     transparent = _check_png(path, data)
     try:
         with Image.open(io.BytesIO(data), formats=["PNG"]) as image:
@@ -111,7 +118,7 @@ def read_png(path: str | Path) -> Codes:
 def _check_png(path: str | Path, data: bytes) -> bool:
     """Refuse what is not a whole PNG of 8 bits; tell whether it has an alpha."""
     if not data.startswith(SIGNATURE):
-        raise ValueError(f"{path}: not a PNG file")
+        raise ValueError(f"{path}: expected a PNG file, got another kind")
     chunks = list(_chunks(path, data))
     if chunks[0][0] != b"IHDR" or len(chunks[0][1]) != 13:
         raise ValueError(_damaged(path, "no header"))
@@ -175,4 +182,4 @@ def _check_codes(name: str, codes: np.ndarray) -> None:
 
 
 def _damaged(path: str | Path, how: str) -> str:
-    return f"{path}: damaged PNG file ({how})"
+    return f"{path}: expected a whole PNG file, got a damaged one ({how})"

@@ -93,6 +93,11 @@ def approximate(
     -------
     The balls, and as skipped those that were dropped because their density was 0.
 
+    Raises
+    ------
+    ValueError
+        The balls would cover over 2^24 voxels together.
+
     Source: paper M, section 3, eq 11-24; E18, E19.
 
     Examples

@@ -9,6 +9,7 @@ counting them is what keeps the balls from bleeding.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,8 @@ Numbers = NDArray[np.integer]
 EQUAL_EDGES = 1e-6
 # Balls whose radii differ by less than this factor share one stencil of voxels.
 STENCIL_STEP = 1.1
+# Pairs of voxel and ball take about 100 bytes each: 1.6 GB, the most a fit may use.
+MOST_PAIRS = 1 << 24
 # Entries of a stencil times balls that are listed at a time: 8 MB for each temporary.
 BLOCK = 1 << 20
 
@@ -129,6 +132,7 @@ def prepare(grid: VoxelGrid) -> Work | None:
 
 def list_pairs(work: Work, centers: Array, radii: Array, kernel: Kernel) -> Pairs:
     """List all pairs with |voxel - centre| < R, ball after ball."""
+    _refuse_too_many(radii)
     low, shape, target = _box(work, centers, radii)
     base = np.rint(centers / work.edges)  # (N, 3) the voxel nearest to each centre
     inside = centers - base * work.edges  # at most half an edge
@@ -166,6 +170,18 @@ def list_pairs(work: Work, centers: Array, radii: Array, kernel: Kernel) -> Pair
         count=len(radii),
         target=target.ravel(),
     )
+
+
+def _refuse_too_many(radii: Array) -> None:
+    """Refuse balls that cover more voxels together than memory should hold."""
+    largest = float(radii.max(initial=0.0))
+    covered = 4.0 / 3.0 * math.pi * float(np.sum((radii / max(largest, 1.0)) ** 3))
+    covered *= max(largest, 1.0) ** 3
+    if not max(covered, (2.0 * largest) ** 3) <= MOST_PAIRS:
+        raise ValueError(
+            f"overlap: expected balls that cover at most {MOST_PAIRS} voxels together,"
+            f" got {covered:.3g}; lower overlap or least_radius, or use larger voxels"
+        )
 
 
 def _box(

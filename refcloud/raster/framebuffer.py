@@ -13,8 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from refcloud.checking import checked, complaint
-from refcloud.conventions import Array, Range, Shape
-from refcloud.image.encode import MOST_PIXELS
+from refcloud.conventions import MOST_PIXELS, Array, Range, Shape
 
 CHANNELS = 4  # red, green, blue, alpha
 NOTHING = np.zeros(CHANNELS)
