@@ -8,6 +8,7 @@ behind an opaque front need not be drawn.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Annotated, Any
 
@@ -135,7 +136,10 @@ def eyeward(
     # Behind pixels that let no more than this through, all together changes less than
     # half the tolerance: it is between 0 and the brightest, and is seen through them.
     least = 0.5 * tolerance / brightest
-    drawn = np.zeros_like(pixels)
+    # Only this box of pixels changes; the rest is neither copied nor blended.
+    box = _touched(x[order], y[order], radius[order], camera)
+    behind = pixels[box].copy()
+    drawn = np.zeros_like(behind)
     groups = [np.flatnonzero(sigma_ts == s) for s in dict.fromkeys(sigma_ts.tolist())]
     hidden = len(order)
     for channels in groups:
@@ -157,20 +161,36 @@ def eyeward(
             part = np.zeros_like(pixels)
             seen = sum(draw_under(part, shading, ball, least) for ball in chosen)
             hidden = min(hidden, len(order) - seen)
-            blend_patch(part, pixels, "ONE_MINUS_DST_ALPHA", "ONE")
+            blend_patch(part[box], behind, "ONE_MINUS_DST_ALPHA", "ONE")
         else:
             part = pixels.copy()
             for ball in chosen:
                 draw_over(part, shading, ball)
             hidden = 0
-        drawn[..., channels] = part[..., channels]
-        drawn[..., 3] += part[..., 3] * (len(channels) / 3.0)
+        drawn[..., channels] = part[box][..., channels]
+        drawn[..., 3] += part[box][..., 3] * (len(channels) / 3.0)
+    pixels[box] = drawn
     if hidden:
         row = Skipped(
             "eye", "balls behind opaque ones", hidden, len(x), tolerance / 2.0
         )
         skipped.append(row)
-    return drawn, tuple(skipped)
+    return pixels, tuple(skipped)
+
+
+def _touched(
+    x: Array, y: Array, radius: Array, camera: AnyCamera
+) -> tuple[slice, slice]:
+    """Give the rows and columns of the picture that balls may touch."""
+    if not len(x):
+        return slice(0, 0), slice(0, 0)
+    left, top = max(float((x - radius).min()), 0.0), max(float((y - radius).min()), 0.0)
+    right = min(float((x + radius).max()), camera.width)
+    bottom = min(float((y + radius).max()), camera.height)
+    return (
+        slice(math.floor(top), math.ceil(bottom)),
+        slice(math.floor(left), math.ceil(right)),
+    )
 
 
 def _eye_depths(lit: LitMetaballs, sigma_t: float, depth: Array) -> Array:
