@@ -48,7 +48,8 @@ def refuse_large(width: int, height: int) -> None:
 def _check_view(camera: Camera | OrthographicCamera) -> None:
     check_fields(camera)
     refuse_large(camera.width, camera.height)
-    gap = camera.target - camera.eye
+    with np.errstate(over="ignore"):  # what is too far is refused below
+        gap = camera.target - camera.eye
     if not np.isfinite(gap).all() or not gap.any():
         raise ValueError(
             "target: expected another place than the eye, got the same or one too far"

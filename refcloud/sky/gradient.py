@@ -8,8 +8,8 @@ from typing import Annotated
 
 import numpy as np
 
-from refcloud.camera import MOST_PIXELS, AnyCamera, Side, rays
-from refcloud.checking import check_fields, checked, complaint
+from refcloud.camera import AnyCamera, Side, rays, refuse_large
+from refcloud.checking import check_fields, checked
 from refcloud.conventions import Array, Colour, Positive, Range
 from refcloud.optics import Sun
 from refcloud.optics.phase import henyey_greenstein
@@ -124,7 +124,7 @@ def sky_gradient(top: Colour, bottom: Colour, *, width: Side, height: Side) -> A
     >>> sky_gradient([1, 1, 1], [0, 0, 0], width=1, height=2)[:, 0, 0]
     array([0.75, 0.25])
     """
-    _refuse_large(width, height)
+    refuse_large(width, height)
     t = ((np.arange(height) + 0.5) / height)[:, None, None]
     return np.broadcast_to(top + (bottom - top) * t, (height, width, 3)).copy()
 
@@ -157,14 +157,8 @@ def printed_gradient(*, width: Side, height: Side) -> Array:
     >>> printed_gradient(width=1, height=1)[0, 0].round(2)
     array([0.  , 0.  , 0.15])
     """
-    _refuse_large(width, height)
+    refuse_large(width, height)
     y = 1.0 - 2.0 * (np.arange(height) + 0.5) / height
     blue = 0.4 + (y + 1.0) / 2.0 * (0.6 - 0.4)
     color = np.maximum(np.array([0.39, 0.30, 0.65]) - blue[:, None], 0.0)
     return np.repeat(color[:, None, :], width, axis=1)
-
-
-def _refuse_large(width: int, height: int) -> None:
-    if width * height > MOST_PIXELS:
-        expected = f"at most {MOST_PIXELS / 1e6:.0f} megapixels"
-        raise ValueError(complaint("width", expected, f"{width} x {height}"))
