@@ -108,16 +108,18 @@ def test_points_beside_the_eye_overflow_nothing(depth: float, aside: float) -> N
 @given(cameras, places)
 def test_nothing_changes_far_from_home(camera, point) -> None:
     _, _, depth, _ = project(camera, [point])
-    assume(abs(depth[0]) > 0.1)
+    across = np.cross(camera.up / math.hypot(*camera.up), axes(camera)[2])
+    # Where `up` is nearly along the view, rounding may choose another axis for it.
+    assume(abs(depth[0]) > 0.1 and math.hypot(*across) > 0.01)
     away = np.array([1e6, -1e6, 1e6])
     moved = dataclasses.replace(
         camera, eye=camera.eye + away, target=camera.target + away
     )
     near, far = project(camera, [point]), project(moved, np.add(point, away)[None])
-    # Places there are known to 1e-10; up to 240 pixels show per unit at depth 0.1,
-    # and `up` may be a thousandth off the view.
+    # Places there are known to 1e-10, directions over 0.1 to 1e-9, and frames whose
+    # `up` is a hundredth off the view to 1e-7; 2400 pixels show per unit at depth 0.1.
     for a, b in zip(near, far, strict=True):
-        np.testing.assert_allclose(b, a, rtol=2e-4, atol=2e-4)
+        np.testing.assert_allclose(b, a, rtol=1e-5, atol=3e-3)
 
 
 @given(cameras, st.lists(places, min_size=2, max_size=9), st.randoms())
