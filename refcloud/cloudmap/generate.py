@@ -193,14 +193,16 @@ def _lattice(
     lower: Array, upper: Array, voxel: float
 ) -> tuple[tuple[Array, Array, Array], Array]:
     """Give the cells' centres along each axis, and the index of the first cell."""
-    first = np.floor(lower / voxel) - PADDING
-    counts = np.ceil(upper / voxel) + PADDING - first
-    if not np.isfinite(counts).all() or float(np.prod(counts)) > MOST_VOXELS:
+    with np.errstate(over="ignore", invalid="ignore"):  # too many are refused
+        first = np.floor(lower / voxel) - PADDING
+        counts = np.ceil(upper / voxel) + PADDING - first
+        total = float(np.prod(counts))
+    if not total <= MOST_VOXELS:
         raise ValueError(
             complaint(
                 "voxel",
                 f"a grid of at most {MOST_VOXELS} cells",
-                f"{float(np.prod(counts)):.3g} cells",
+                f"{total:.3g} cells",
                 "choose a larger voxel or smaller diameters",
             )
         )

@@ -65,7 +65,7 @@ def clamped_trilinear(values: Array, x: Array, y: Array, z: Array) -> Array:
     flat = values.reshape(-1, *values.shape[3:])
     places, fractions = [], []
     for coordinate, n in ((x, W), (y, H), (z, D)):
-        c = np.maximum(coordinate, 0.0)
+        c = np.asarray(np.maximum(coordinate, 0.0))  # an array at a single place too
         np.minimum(c, n - 1.0, out=c)
         cell = c.astype(np.intp)
         np.minimum(cell, max(n - 2, 0), out=cell)
