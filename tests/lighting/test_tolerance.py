@@ -1,0 +1,113 @@
+"""A tolerance is kept: the measured error of generated scenes never exceeds it."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from small_scenes import BACKDROP, EYE, LOOKS, MEDIUM, SUNS, drawn
+from twins.lighting import (
+    clouds,
+    colours,
+    looks,
+    media,
+    scattered_balls,
+    seeds,
+    suns_of,
+)
+
+from refcloud.camera import Camera
+from refcloud.lighting import Haze, Look, eyeward, sunward
+from refcloud.metaballs import Metaballs
+
+# The two orders of drawing round apart, by last bits of a few dozen sums.
+ROUNDED = 1e-12
+tolerances = st.floats(-4.0, np.log10(0.3)).map(lambda power: 10.0**power)
+backdrops = st.sampled_from([None, BACKDROP, np.zeros_like(BACKDROP)])
+hazes = st.none() | st.builds(Haze, colours, st.floats(1.0, 50.0))
+
+
+def error_and_rows(balls, suns, medium, look, tolerance, background, haze):
+    """Measure what a tolerance changes: the largest error, and the report."""
+    lit = sunward(balls, suns, medium=medium, look=look)
+    how = {"background": background, "haze": haze}
+    exact, _ = eyeward(lit, EYE, **how)
+    found, rows = eyeward(lit, EYE, tolerance=tolerance, **how)
+    scale = max(1.0, float(np.abs(exact).max()))
+    return np.abs(found - exact).max() - ROUNDED * scale, rows
+
+
+@settings(max_examples=150)
+@given(clouds(8), suns_of(), media, looks, tolerances, backdrops, hazes)
+def test_the_error_never_exceeds_the_tolerance(
+    balls, suns, medium, look, tolerance, background, haze
+) -> None:
+    error, rows = error_and_rows(balls, suns, medium, look, tolerance, background, haze)
+    assert error <= tolerance
+    dropped = [row for row in rows if row.stage == "eye" and row.bound > 0.0]
+    assert sum(row.bound for row in dropped) <= tolerance
+
+
+@pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS)
+@settings(max_examples=20)
+@given(seeds, tolerances)
+def test_nor_in_thick_clouds_of_many_balls(look: Look, seed: int, tolerance) -> None:
+    rules = dataclasses.replace(look, tau=None)
+    balls = scattered_balls(seed, 24)
+    thick = dataclasses.replace(balls, densities=6.0 * balls.densities)
+    error, _ = error_and_rows(thick, SUNS, MEDIUM, rules, tolerance, BACKDROP, None)
+    assert error <= tolerance
+
+
+def test_faint_balls_are_left_out_counted_and_bounded() -> None:
+    faint = scattered_balls(3, 8)
+    densities = np.where(np.arange(8) < 5, 1e-6, 1.0)
+    balls = dataclasses.replace(faint, densities=densities)
+    lit = sunward(balls, SUNS, medium=MEDIUM, look="cumulus")
+    _, rows = eyeward(lit, EYE, background=BACKDROP, tolerance=0.01)
+    (row,) = [row for row in rows if "faint" in row.what]
+    assert (row.stage, row.skipped, row.of) == ("eye", 5, 8)
+    assert 0.0 < row.bound <= 0.01
+    _, none = eyeward(lit, EYE, background=BACKDROP)
+    assert not [row for row in none if "faint" in row.what]
+
+
+def test_balls_behind_an_opaque_front_are_left_out_and_counted() -> None:
+    spots = [[0, 0, 2], [0, 0, -2], [0.1, 0, -3]]
+    balls = Metaballs(spots, [2.0, 0.3, 0.3], [1e3, 1.0, 1.0])
+    rules = dataclasses.replace(LOOKS["man"], tau=None, transmittance="beer")
+    lit = sunward(balls, SUNS, medium=MEDIUM, look=rules)
+    _, rows = eyeward(lit, EYE, background=BACKDROP, tolerance=0.01)
+    (row,) = [row for row in rows if "opaque" in row.what]
+    assert (row.skipped, row.of) == (2, 3)
+    assert row.bound <= 0.01
+
+
+def test_the_exact_picture_reports_what_cannot_show() -> None:
+    spots = [[0, 0, 0], [99, 0, 0], [0, 0, 50]]  # seen, beside, behind the eye
+    balls = Metaballs(spots, np.ones(3), np.ones(3))
+    dark = dataclasses.replace(SUNS[0], irradiance=np.zeros(3))
+    lit = sunward(balls, (dark, SUNS[1]), medium=MEDIUM, look="man")
+    _, rows = eyeward(lit, EYE)
+    reported = {(row.stage, row.what): (row.skipped, row.of, row.bound) for row in rows}
+    assert reported == {
+        ("eye", "balls off the picture"): (2, 3, 0.0),
+        ("light", "suns without light"): (1, 2, 0.0),
+    }
+
+
+def test_the_noise_of_footprints_does_not_change_with_the_tolerance() -> None:
+    # A faint ball right before the eye has the finest pixels of all: the table of the
+    # noise follows them, whether the ball is drawn or not.
+    balls = scattered_balls(5, 6)
+    near = Metaballs(
+        np.vstack([balls.centers, [0.45, 0.9, 6.4]]),
+        np.append(balls.radii, 0.2),
+        np.append(balls.densities, 1e-9),
+    )
+    eye = Camera(EYE.eye, EYE.target, width=60, height=45)
+    exact = drawn(near, SUNS, camera=eye)
+    assert np.abs(drawn(near, SUNS, camera=eye, tolerance=0.01) - exact).max() <= 0.01
