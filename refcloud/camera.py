@@ -264,7 +264,7 @@ def frame(
     -------
     The camera.
 
-    Source: design.md, section 5 ("without a camera the bounds are framed").
+    Source: the look-at and perspective transforms of OpenGL.
 
     Examples
     --------

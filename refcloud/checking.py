@@ -190,9 +190,14 @@ def _check_union(
             refusals.append(refusal)
     if len(refusals) == 1:
         raise refusals[0]
-    # A value of the right kind but out of range says more than a wrong kind.
-    kind = next((r for r in refusals if isinstance(r, ValueError)), refusals[0])
-    raise kind
+    # Name everything that would have done; ValueError where one of the kinds was right.
+    marks = [str(r).split(": expected ", 1)[1].split(", got ")[0] for r in refusals]
+    got = str(refusals[0]).split(", got ", 1)[1].split("; ")[0]
+    right = [r for r in refusals if isinstance(r, ValueError)]
+    if right:
+        got = str(right[0]).split(", got ", 1)[1].split("; ")[0]
+    kind = ValueError if right else TypeError
+    raise kind(complaint(name, " or ".join(dict.fromkeys(marks)), got))
 
 
 def _check_tuple(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -94,14 +95,20 @@ def draw_layers(
 
 
 def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
-    """Add up the rows of several layers that say the same; errors add up at most."""
+    """Join the rows of several layers that say the same.
+
+    Errors of the picture add up at most; those of a stage's own result stay with it.
+    """
     sums: dict[tuple[str, str], Skipped] = {}
     for row in rows:
-        key = row.stage, row.what
-        old = sums.get(key, Skipped(*key, 0, 0))
-        sums[key] = Skipped(
-            *key, old.skipped + row.skipped, old.of + row.of, old.bound + row.bound
-        )
+        old = sums.get((row.stage, row.what))
+        if old is not None:
+            adds = row.unit == "displayed white"
+            bound = old.bound + row.bound if adds else max(old.bound, row.bound)
+            row = dataclasses.replace(
+                row, skipped=old.skipped + row.skipped, of=old.of + row.of, bound=bound
+            )
+        sums[row.stage, row.what] = row
     return tuple(sums.values())
 
 

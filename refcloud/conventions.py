@@ -128,7 +128,9 @@ class Skipped:
     skipped, of
         How many were left out, of how many.
     bound
-        The largest change of the stage's result, in its unit; 0 where none.
+        The largest change of the stage's result; 0 where none.
+    unit
+        What the bound counts: "displayed white" in pictures, else the stage's own.
     """
 
     stage: str
@@ -136,12 +138,14 @@ class Skipped:
     skipped: int
     of: int
     bound: float = 0.0
+    unit: str = "displayed white"
 
     def __str__(self) -> str:
         """Give the row as one line of text."""
         return (
             f"{self.stage}: {self.skipped} of {self.of} {self.what}"
             f" skipped, error at most {self.bound:.2g}"
+            + (f" ({self.unit})" if self.bound else "")
         )
 
 

@@ -53,7 +53,7 @@ def render(
     camera: Camera | OrthographicCamera | None = None,
     width: Side | None = None,
     height: Side | None = None,
-    suns: tuple[Sun, ...] | None = None,
+    suns: Sun | tuple[Sun, ...] | None = None,
     medium: Medium | None = None,
     background: Sky
     | Literal["transparent"]
@@ -78,9 +78,10 @@ def render(
     camera
         The eye; None frames the cloud, or takes the scene's own.
     width, height
-        Size where no camera is given, pixels; by quality 320 x 240 or 1024 x 768.
+        Size where no camera is given, pixels; by quality 320 x 240 or 1024 x 768. One
+        alone keeps that shape, 4 to 3.
     suns
-        The lights; None for one from the front left.
+        The lights, one or several; None for one from the front left.
     medium
         What the cloud is made of; None sets sigma_t so that the optical depth through
         the cloud's middle is 40.
@@ -109,16 +110,21 @@ def render(
     ValueError
         No scene has that name; the picture is over 64 megapixels.
 
-    Source: paper M, section 4; design.md, section 5.
+    Source: paper M, section 4 (W03).
     """
-    size = SIZES[quality]
-    width, height = width or size[0], height or size[1]
+    if isinstance(suns, Sun):
+        suns = (suns,)
+    width, height = size_of(width, height, quality)
     if isinstance(cloud, str):
         scene = find_scene(cloud)
         refuse_large(width, height)  # before the clouds are made
         if background is not None or haze is not None:
             raise ValueError(
-                complaint("background", "none beside a scene's name", "one or haze")
+                complaint(
+                    "background" if haze is None else "haze",
+                    "none beside a scene's name, which brings its own",
+                    "one",
+                )
             )
         view = View(width, height, camera, suns, medium, look, tolerance, seed, observe)
         model = scene.model()
@@ -154,6 +160,16 @@ def render(
         observe=observe,
     )
     return dataclasses.replace(picture, notes=(*notes, *picture.notes))
+
+
+def size_of(width: int | None, height: int | None, quality: str) -> tuple[int, int]:
+    """Complete a picture's size; one side alone keeps the shape of the default."""
+    across, down = SIZES[quality]
+    if width is None and height is None:
+        return across, down
+    if width is None:
+        return max(round((height or 1) * across / down), 1), height or 1
+    return width, height or max(round(width * down / across), 1)
 
 
 def default_medium(balls: Metaballs, look: Look) -> tuple[Medium, str]:

@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from refcloud import Metaballs, Picture, VoxelGrid
 from refcloud.checking import check, check_fields, checked, complaint
 from refcloud.conventions import (
     Array,
@@ -110,7 +111,7 @@ def refusal(value: Any, hint: Any, error: Errors = ValueError) -> str:
         ((1, 2.5), tuple[int, int], TypeError, "thing[1]: expected a whole number"),
         ((1, -1), tuple[SHARE, ...], ValueError, "thing[1]: expected a finite number"),
         ("a", SHARE | None, TypeError, "expected a finite number in [0, 1], got 'a'"),
-        (2, SHARE | str, ValueError, "expected a finite number in [0, 1], got 2"),
+        (2, SHARE | str, ValueError, "in [0, 1] or a text, got 2"),
         ([1], SHARE | str, TypeError, "got a list"),
     ],
     ids=lambda value: str(value)[:30],
@@ -382,9 +383,21 @@ def test_a_zero_vector_is_refused_by_its_name() -> None:
 
 def test_a_row_of_the_report_is_one_line() -> None:
     row = Skipped("noise", "octaves", 2, 5, 0.0123)
-    assert str(row) == "noise: 2 of 5 octaves skipped, error at most 0.012"
+    assert (
+        str(row)
+        == "noise: 2 of 5 octaves skipped, error at most 0.012 (displayed white)"
+    )
 
 
 def test_a_partial_call_is_checked_too() -> None:
     with pytest.raises(ValueError, match="a: expected"):
         functools.partial(example, 2.0)()
+
+
+def test_values_with_many_numbers_print_short() -> None:
+    balls = Metaballs(np.zeros((500, 3)), np.ones(500), np.ones(500))
+    grid = VoxelGrid(np.ones((9, 9, 9)), np.zeros(3), np.ones(3))
+    for value in (balls, grid, Picture(np.zeros((40, 30, 3)))):
+        text = repr(value)
+        assert len(text) < 80, text
+        assert "\n" not in text, text

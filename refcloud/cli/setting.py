@@ -20,8 +20,8 @@ from refcloud.lighting import named
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.render import SIZES, default_medium, framed, render
 from refcloud.render import SUN as DEFAULT_SUN
+from refcloud.render import default_medium, framed, render, size_of
 from refcloud.sky import Sky
 
 SKY = "sky"
@@ -59,8 +59,9 @@ def size_for(chosen: Mapping[str, Any]) -> tuple[int, int]:
     ValueError
         The picture is too large; found before any work.
     """
-    width, height = SIZES[chosen.get("quality", QUALITY)]
-    width, height = chosen.get("width", width), chosen.get("height", height)
+    width, height = size_of(
+        chosen.get("width"), chosen.get("height"), chosen.get("quality", QUALITY)
+    )
     Camera(np.ones(3), np.zeros(3), width=width, height=height)
     return width, height
 
@@ -107,6 +108,8 @@ def medium_for(
     """
     if not given:
         return None, ()
+    if "g" in given and "phase" not in given:
+        given = {**given, "phase": "hg"}  # the only phase function that has a g
     if "sigma_t" in given:
         return Medium(**given), ()
     if cloud is None:
@@ -143,7 +146,6 @@ def suns_for(given: Mapping[str, Any], is_scene: bool) -> tuple[Sun, ...] | None
     if len(light) not in (0, 1, len(directions)):
         expected = f"one for all or {len(directions)}, one for each --sun"
         raise ValueError(complaint("--irradiance", expected, f"{len(light)}"))
-    if not light:
-        return tuple(Sun(direction) for direction in directions)
+    light = light or [DEFAULT_SUN.irradiance]  # a moved sun shines as it did
     light = light * len(directions) if len(light) == 1 else light
     return tuple(Sun(d, i) for d, i in zip(directions, light, strict=True))

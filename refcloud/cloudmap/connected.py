@@ -28,7 +28,7 @@ def largest_part(
     The same shape; all other cells are 0. Of equal parts the one with the highest
     cell index stays.
 
-    Source: look.md, section 4 (loose beads).
+    Source: an extension of paper M, section 2.
 
     Examples
     --------

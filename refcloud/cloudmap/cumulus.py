@@ -41,7 +41,7 @@ def cumulus_ellipsoids(
     -------
     Centres and half axes, each of shape (215, 3), scene units.
 
-    Source: paper M, section 2 (union of ellipsoid volumes, V05); look.md, section 1.
+    Source: paper M, section 2 (union of ellipsoid volumes, V05), extended.
 
     Examples
     --------
@@ -185,7 +185,7 @@ def displace(
     -------
     Density, shape (D, H, W), in [0, 1].
 
-    Source: an extension of paper M, eq 10; look.md, sections 1 and 4.
+    Source: an extension of paper M, eq 10.
     """
     surface = (depth + relief * (np.abs(noise) - MEAN_NOISE)) / edge
     base = y[None, :, None] + 0.5 * noise

@@ -29,7 +29,7 @@ def trilinear(grid: VoxelGrid, points: Annotated[Array, Shape("...", 3)]) -> Arr
     -------
     Shape (...,).
 
-    Source: "Clouds on Demand" (N30); design.md, section 4.
+    Source: document D (N30).
 
     Examples
     --------

@@ -13,7 +13,7 @@ from refcloud.conventions import Array, Range, Shape, Skipped, Vector
 MOST_VOXELS = 1 << 28  # 2 GiB of float64: larger grids are refused before allocation
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class VoxelGrid:
     """A cloud as densities on a grid; the value sits at its cell's centre.
 
@@ -49,6 +49,17 @@ class VoxelGrid:
             size = self.upper - self.lower
         if not np.all(np.isfinite(size)):
             raise ValueError("upper: expected a box of finite size, got one too large")
+
+    def __repr__(self) -> str:
+        """Say what it is without its numbers."""
+        lower, upper = (
+            " ".join(f"{v:.4g}" for v in c) for c in (self.lower, self.upper)
+        )
+        occupied = int(np.count_nonzero(self.density))
+        return (
+            f"VoxelGrid(shape {self.density.shape}, {occupied} occupied,"
+            f" {lower} to {upper})"
+        )
 
 
 @checked
@@ -91,7 +102,7 @@ def cell_centres(grid: VoxelGrid) -> tuple[Array, Array, Array]:
     -------
     x of shape (W,), y of shape (H,), z of shape (D,), scene units.
 
-    Source: paper M, section 3 (V04); design.md, section 4.
+    Source: paper M, section 3 (V04).
 
     Examples
     --------

@@ -68,7 +68,7 @@ def compare_codes(
     TypeError, ValueError
         Not codes, or of different shapes.
 
-    Source: design of the golden pictures (one code, a thousandth of the pixels); U13.
+    Source: design of the golden pictures (one code, a thousandth of the pixels).
 
     Examples
     --------
@@ -117,7 +117,7 @@ def difference_picture(
     ValueError
         The sizes differ.
 
-    Source: issue 2, item 8; T07.
+    Source: none; a picture for finding faults.
 
     Examples
     --------

@@ -57,7 +57,7 @@ def srgb_encode(linear: Unit) -> Array:
     -------
     Encoded values in [0, 1], same shape.
 
-    Source: IEC 61966-2-1; issue 2, item 8.
+    Source: IEC 61966-2-1.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def srgb_decode(encoded: Unit) -> Array:
     -------
     Linear light in [0, 1], same shape.
 
-    Source: IEC 61966-2-1; issue 2, item 8.
+    Source: IEC 61966-2-1.
 
     Examples
     --------
@@ -152,7 +152,7 @@ def quantize(
     -------
     Codes 0 to 255, shape (H, W, 3), uint8.
 
-    Source: issue 2, item 8; U13.
+    Source: Bayer's ordered dither.
 
     Examples
     --------
@@ -199,7 +199,7 @@ def to_codes(
     -------
     Codes 0 to 255, shape (H, W, 3), uint8.
 
-    Source: issue 2, item 8; E34 (colours below 0).
+    Source: IEC 61966-2-1; E34 (colours below 0).
 
     Examples
     --------

@@ -20,7 +20,7 @@ from refcloud.image.encode import WHITE, Codes, Exposure, Tone, srgb_decode, to_
 LEAST_ALPHA = 0.5 / WHITE
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Picture:
     """Linear RGB light, perhaps with how much of what lies behind is covered.
 
@@ -50,6 +50,12 @@ class Picture:
         check_fields(self)
         height, width, _ = self.linear.shape
         png.check_size("linear", width, height)
+
+    def __repr__(self) -> str:
+        """Say what it is without its numbers."""
+        height, width, _ = self.linear.shape
+        alpha = "" if self.alpha is None else ", with alpha"
+        return f"Picture({width} x {height}{alpha}, brightest {self.linear.max():.4g})"
 
     @checked
     def codes(
@@ -145,7 +151,7 @@ def load_picture(path: str | Path) -> Picture:
     ValueError
         Damaged, of another kind, or above 64 million pixels.
 
-    Source: issue 2, items 8 and 9.
+    Source: the PNG specification; NumPy's .npy format.
     """
     path = Path(path)
     if _suffix(path) == ".png":

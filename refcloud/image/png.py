@@ -49,7 +49,7 @@ def write_png(path: str | Path, codes: np.ndarray) -> Path:
     TypeError, ValueError
         Codes of another type or shape.
 
-    Source: issue 2, item 8.
+    Source: the PNG specification.
     """
     _check_codes("codes", codes)
     write_atomically(path, lambda file: encode_png(codes, file))
@@ -91,7 +91,7 @@ def read_png(path: str | Path) -> Codes:
     ValueError
         Not a PNG, a damaged one, one of 16 bits, or one above 64 million pixels.
 
-    Source: issue 2, item 9 (damaged files).
+    Source: the PNG specification.
     """
     try:
         if os.path.getsize(path) > MOST_BYTES:

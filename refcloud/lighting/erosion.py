@@ -7,13 +7,14 @@ grows, so that no light is made.
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Annotated
 
 import numpy as np
 
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid
-from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
+from refcloud.conventions import Array, Positive, Range, Seed, Shape
 from refcloud.noise import octave_sum_grid
 
 OCTAVES = 4
@@ -55,7 +56,7 @@ def detail_grid(
     The table, values in [0, 1]; octaves left out because the box is wide stand in its
     `skipped`.
 
-    Source: look.md, section 1 (eroded footprint), anchored in the world.
+    Source: an extension of paper M, eq 12.
     """
     spacing = cell / 2 ** (OCTAVES - 1) / SAMPLES
     while SAMPLES * spacing < pixel:
@@ -81,7 +82,7 @@ def detail_grid(
         finest=spacing / cell,
     )
     rows = tuple(
-        Skipped("erosion", row.what, row.skipped, row.of, row.bound / NEARLY_ALL)
+        dataclasses.replace(row, stage="erosion", bound=row.bound / NEARLY_ALL)
         for row in skipped
     )
     return VoxelGrid(
@@ -116,7 +117,7 @@ def eroded(
     -------
     The weight, the same shape, in [0, weight].
 
-    Source: look.md, section 1 (eroded footprint).
+    Source: an extension of paper M, eq 12.
 
     Examples
     --------
@@ -167,7 +168,7 @@ def lit_share(
     -------
     The same shape; it only takes light.
 
-    Source: look.md, section 1 (emboss), made to keep the laws.
+    Source: an extension of paper M, eq 29.
 
     Examples
     --------

@@ -15,7 +15,7 @@ Share = Annotated[float, Range(0.0, 1.0)]
 Side = Annotated[int, Range(1, 4096, "pixels")]
 LookName = Literal["cumulus", "man"]
 
-# The sky's and the ground's light on a cloud (look.md, section 1: 0.75 of the hues).
+# The sky's and the ground's light on a cloud, by eye.
 SKY_LIGHT = 0.75 * np.array([0.27, 0.40, 0.62])
 GROUND_LIGHT = 0.75 * np.array([0.16, 0.18, 0.21])
 

@@ -209,6 +209,13 @@ def _skipped(work: Work, fit: Fit, count: int) -> tuple[Skipped, ...]:
     if len(below):
         bound = work.peak * abs(float(below.sum()))
         rows.append(
-            Skipped("approximate", "balls of no density", len(below), count, bound)
+            Skipped(
+                "approximate",
+                "balls of no density",
+                len(below),
+                count,
+                bound,
+                "density",
+            )
         )
     return tuple(rows)

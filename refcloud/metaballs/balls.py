@@ -17,7 +17,7 @@ from refcloud.metaballs.kernels import Kernel
 VOXEL_REACH = 1.5  # radius in mean cell edges
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Metaballs:
     """A cloud as N balls of density, each falling from its centre to 0 at its radius.
 
@@ -45,6 +45,16 @@ class Metaballs:
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+    def __repr__(self) -> str:
+        """Say what it is without its numbers."""
+        if not len(self):
+            return f"Metaballs(0 balls, {self.kernel})"
+        least, most = float(self.radii.min()), float(self.radii.max())
+        return (
+            f"Metaballs({len(self)} balls, radii {least:.4g} to {most:.4g},"
+            f" {self.kernel})"
+        )
 
     def __len__(self) -> int:
         """Give the number of balls."""

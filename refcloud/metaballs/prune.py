@@ -39,7 +39,7 @@ def prune(
     -------
     The balls kept, in their order, with a row of ``skipped`` where any are dropped.
 
-    Source: look.md, section 1 (floating beads).
+    Source: an extension of paper M, section 3.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def prune(
     if not dropped:
         return balls
     bound = _overlapping(balls, ~kept)
-    row = Skipped("prune", "balls that float alone", dropped, total, bound)
+    row = Skipped("prune", "balls that float alone", dropped, total, bound, "density")
     return replace(
         balls,
         centers=balls.centers[kept],

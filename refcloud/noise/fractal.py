@@ -192,7 +192,7 @@ def octave_sum_grid(
     --------
     >>> noise, skipped = octave_sum_grid([0.0, 0.5], [0.0], [0.0], finest=0.5)
     >>> print(skipped[0])
-    noise: 2 of 4 octaves with under a sample per cell skipped, error at most 0.38
+    noise: 2 of 4 octaves too fine to show skipped, error at most 0.38 (noise)
     """
     peak = PEAKS[interpolant] ** 3
     bound = octave_bound(octaves, persistence) * peak
@@ -208,10 +208,11 @@ def octave_sum_grid(
     lost = peak * math.fsum(persistence**i for i in range(len(kept), octaves))
     row = Skipped(
         "noise",
-        "octaves with under a sample per cell",
+        "octaves too fine to show",
         octaves - len(kept),
         octaves,
         lost / bound if normalize == "bound" else lost,
+        "noise",
     )
     return values, (row,)
 

@@ -169,7 +169,7 @@ def uniform(*words: Any, seed: Seed) -> Array:
     TypeError
         A word is not whole.
 
-    Source: not in the papers; W12 asks for it.
+    Source: determinism (W12).
 
     Examples
     --------

@@ -112,7 +112,7 @@ def henyey_greenstein(
     -------
     The same shape, 1 / steradian.
 
-    Source: "Clouds on Demand" names it (R04); E20, E36.
+    Source: document D names it (R04); E20, E36.
 
     Examples
     --------

@@ -70,7 +70,7 @@ def clear_sky(
     -------
     Linear RGB, shape (H, W, 3).
 
-    Source: look.md, sections 1 and 2 (sky).
+    Source: document D (F13), extended.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def sky_gradient(top: Colour, bottom: Colour, *, width: Side, height: Side) -> A
     ValueError
         The picture is over 64 megapixels.
 
-    Source: "Clouds on Demand" (F13), mended; E34.
+    Source: document D (F13), mended; E34.
 
     Examples
     --------
@@ -131,7 +131,7 @@ def sky_gradient(top: Colour, bottom: Colour, *, width: Side, height: Side) -> A
 
 @checked
 def printed_gradient(*, width: Side, height: Side) -> Array:
-    """Paint the gradient sky of "Clouds on Demand" as printed, clamped: near black.
+    """Paint the gradient sky of document D as printed, clamped: near black.
 
     Formula: max((0.39, 0.30, 0.65) - scale(y, -1, 1, 0.4, 0.6), 0), y from -1 at the
     bottom to 1 at the top
@@ -150,7 +150,7 @@ def printed_gradient(*, width: Side, height: Side) -> Array:
     ValueError
         The picture is over 64 megapixels.
 
-    Source: "Clouds on Demand" (F13); E34.
+    Source: document D (F13); E34.
 
     Examples
     --------
