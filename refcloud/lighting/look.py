@@ -82,9 +82,9 @@ class Look:
     ground_light: Colour = field(default_factory=lambda: GROUND_LIGHT)
     sky_forward: Share = 0.8
     light_reach: Annotated[float, Range(0.0, 10.0, "radii")] = 1.15
-    erosion: Annotated[float, Range(0.0, 1.0, open_upper=True)] = 0.5
-    erosion_cell: Annotated[float, Range(0.01, 100.0, "median radii")] = 0.62
-    erosion_depth: Annotated[float, Range(0.0, 100.0)] = 1.7
+    erosion: Annotated[float, Range(0.0, 1.0, open_upper=True)] = 0.42
+    erosion_cell: Annotated[float, Range(0.01, 100.0, "median radii")] = 0.7
+    erosion_depth: Annotated[float, Range(0.0, 100.0)] = 1.6
     relief: Share = 0.57
     buffer: Side = 256
     sky_buffer: Side = 128
