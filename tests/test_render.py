@@ -1,0 +1,252 @@
+"""The one door: any cloud or a scene's name, any background, defaults that are told."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from small_scenes import BACKDROP, BALLS, EXTENDED, EYE, MEDIUM, PAPER, SUNS, drawn
+from twins.lighting import scattered_balls, seeds
+
+from refcloud import scenes
+from refcloud.camera import Camera
+from refcloud.cloudmap import VoxelGrid
+from refcloud.compose import Layer, draw_layers
+from refcloud.conventions import Skipped
+from refcloud.lighting import Haze
+from refcloud.lighting.depths import through_the_middle
+from refcloud.metaballs import Metaballs, voxel_balls
+from refcloud.optics import Sun
+from refcloud.render import SIZES, THICKNESS, render
+from refcloud.scene import SCENES, Model, Scene, View
+from refcloud.sky import Sky, clear_sky
+
+HOW = {"camera": EYE, "suns": SUNS, "medium": MEDIUM, "look": EXTENDED}
+NOTHING = Metaballs(np.zeros((0, 3)), [], [])
+GRID = VoxelGrid(np.ones((2, 2, 3)), [-1.5, -1, -1], [1.5, 1, 1])
+
+
+def test_it_is_both_passes_over_the_background() -> None:
+    picture = render(BALLS, background=BACKDROP, **HOW)
+    expected = drawn(BALLS, SUNS, background=BACKDROP)
+    np.testing.assert_array_equal(picture.linear, expected[..., :3])
+    assert picture.alpha is None
+    assert set(picture.seconds) == {"sky", "light", "eye"}
+
+
+def test_the_default_sky_stands_behind() -> None:
+    np.testing.assert_array_equal(render(NOTHING, **HOW).linear, clear_sky(EYE))
+    own = Sky(zenith=np.array([1.0, 0.0, 0.0]), glow=0.01)
+    painted = render(NOTHING, background=own, **HOW).linear
+    np.testing.assert_array_equal(painted, clear_sky(EYE, own, suns=SUNS))
+
+
+def test_one_colour_stands_behind() -> None:
+    picture = render(NOTHING, background=[0.1, 0.2, 0.3], **HOW)
+    assert (picture.linear == [0.1, 0.2, 0.3]).all()
+
+
+def test_transparent_keeps_alpha_and_shows_any_background_later() -> None:
+    clear = render(BALLS, background="transparent", **HOW)
+    assert clear.alpha is not None
+    assert 0.0 <= clear.alpha.min() < clear.alpha.max() <= 1.0
+    over = clear.linear + (1.0 - clear.alpha[..., None]) * BACKDROP
+    solid = render(BALLS, background=BACKDROP, **HOW).linear
+    np.testing.assert_allclose(over, solid, rtol=0.0, atol=1e-12)
+    assert not render(NOTHING, background="transparent", **HOW).alpha.any()
+
+
+@settings(max_examples=20)
+@given(seeds, seeds)
+def test_layers_without_a_background_cover_each_other(one, two) -> None:
+    layers = [
+        Layer(scattered_balls(seed, 3), MEDIUM, look, Haze([0.4, 0.5, 0.6], 20.0))
+        for seed, look in ((one, EXTENDED), (two, PAPER))
+    ]
+    clear = draw_layers(layers, EYE, SUNS, "transparent")
+    solid = draw_layers(layers, EYE, SUNS, BACKDROP)
+    assert clear.alpha is not None
+    over = clear.linear + (1.0 - clear.alpha[..., None]) * BACKDROP
+    np.testing.assert_allclose(over, solid.linear, rtol=0.0, atol=1e-12)
+
+
+@settings(max_examples=20)
+@given(seeds, st.floats(1e-3, 0.3))
+def test_layers_share_the_tolerance(seed, tolerance) -> None:
+    layers = [Layer(scattered_balls(seed ^ i, 5), MEDIUM, EXTENDED) for i in range(3)]
+    exact, found = (
+        draw_layers(layers, EYE, SUNS, BACKDROP, tolerance=t) for t in (0.0, tolerance)
+    )
+    assert np.abs(exact.linear - found.linear).max() <= tolerance + 1e-12
+    assert sum(row.bound for row in found.skipped if row.stage == "eye") <= tolerance
+
+
+def test_rows_of_layers_that_say_the_same_are_added_up() -> None:
+    away = dataclasses.replace(BALLS, centers=BALLS.centers + np.array([0, 0, 99.0]))
+    layers = [Layer(away, MEDIUM, PAPER)] * 2
+    picture = draw_layers(layers, EYE, SUNS, BACKDROP)
+    count = len(BALLS)
+    (row,) = picture.skipped
+    assert row == Skipped("eye", "balls off the picture", 2 * count, 2 * count)
+
+
+def test_a_cloud_map_is_drawn_as_its_voxels() -> None:
+    picture = render(GRID, background=BACKDROP, **HOW)
+    balls = render(voxel_balls(GRID), background=BACKDROP, **HOW)
+    np.testing.assert_array_equal(picture.linear, balls.linear)
+    assert picture.notes[0] == "drawn as one ball per occupied voxel: 12 balls"
+    assert balls.notes == ()
+
+
+def test_every_default_is_told() -> None:
+    picture = render(BALLS, width=8, height=6, look=EXTENDED)
+    medium, camera = picture.notes
+    assert medium.startswith("medium: sigma_t ")
+    assert f"optical depth {THICKNESS:g}" in medium
+    assert camera.startswith("camera: eye ")
+    paper = render(BALLS, width=8, height=6, look=PAPER)
+    assert paper.notes[0] == "medium: tau 8 for every ball, albedo 0.9"
+    assert "empty" in render(NOTHING, width=8, height=6).notes[0]
+
+
+@settings(max_examples=20)
+@given(seeds, st.floats(0.01, 100.0))
+def test_the_default_medium_is_as_thick_as_it_says(seed, factor) -> None:
+    balls = scattered_balls(seed, 6)
+    sized = dataclasses.replace(
+        balls,
+        centers=factor * balls.centers,
+        radii=factor * balls.radii,
+        densities=balls.densities + 0.1,
+    )
+    note = render(sized, width=2, height=2, look=EXTENDED).notes[0]
+    sigma_t = float(note.split()[2].rstrip(","))
+    # The note gives four digits.
+    assert through_the_middle(sized, sigma_t) == pytest.approx(THICKNESS, rel=1e-3)
+
+
+@pytest.mark.parametrize("size", [(8, 6), (5, 9)])
+def test_without_a_camera_the_cloud_is_framed_at_the_size(size) -> None:
+    width, height = size
+    seen: dict = {}
+    picture = render(
+        BALLS, width=width, height=height, look=PAPER, observe=seen.__setitem__
+    )
+    assert picture.linear.shape == (height, width, 3)
+    assert len(seen["eye order"]) == len(BALLS), "every ball is on the picture"
+
+
+def test_an_own_camera_brings_its_size() -> None:
+    assert render(BALLS, **HOW).linear.shape == (EYE.height, EYE.width, 3)
+
+
+def test_the_same_call_gives_the_same_bits_and_another_seed_others() -> None:
+    one, two, other = (render(BALLS, seed=s, **HOW).linear for s in (0, 0, 1))
+    np.testing.assert_array_equal(one, two)
+    assert (one != other).any()
+
+
+def test_no_sun_is_another_picture_than_the_default_one() -> None:
+    how = HOW | {"background": [0, 0, 0], "look": PAPER}
+    assert not render(BALLS, **(how | {"suns": ()})).linear.any()
+    assert render(BALLS, **(how | {"suns": None})).linear.any()
+
+
+def test_every_intermediate_can_be_watched() -> None:
+    seen: list[str] = []
+    render(BALLS, observe=lambda name, value: seen.append(name), **HOW)
+    lights = ["light order", "light buffer"] * 4  # two suns, above, below
+    assert seen == [*lights, "detail", "eye order"]
+
+
+def test_skipped_rows_reach_the_picture() -> None:
+    suns = (Sun([0, 1, 0], [0, 0, 0]), SUNS[0])
+    picture = render(BALLS, **(HOW | {"suns": suns}))
+    assert Skipped("light", "suns without light", 1, 2) in picture.skipped
+
+
+def test_a_scene_hands_on_what_it_made_and_chose(monkeypatch) -> None:
+    views: list[View] = []
+    row = Skipped("noise", "octaves", 1, 4, 0.1)
+
+    def draw(model: Model, view: View):
+        views.append(view)
+        picture = render(model.clouds["cloud"], camera=EYE, medium=MEDIUM, look=PAPER)
+        return dataclasses.replace(picture, notes=("drawn",))
+
+    model = Model({"cloud": BALLS}, ("made",), (row,), {"generate": 0.5})
+    scene = Scene("test", "a test", lambda: model, draw)
+    monkeypatch.setitem(SCENES, "test", scene)
+    picture = render("test", quality="quick", tolerance=0.1, seed=3, look="man")
+    assert picture.notes == ("made", "drawn")
+    assert picture.skipped[0] == row
+    assert picture.seconds["generate"] == 0.5
+    (view,) = views
+    assert (view.width, view.height) == SIZES["quick"]
+    assert (view.tolerance, view.seed, view.look) == (0.1, 3, "man")
+    render("test", width=7)
+    # One side alone takes the other with it.
+    assert views[1].width == 7
+    aspect = SIZES["final"][0] / SIZES["final"][1]
+    assert views[1].height == pytest.approx(7 / aspect, abs=0.5)
+    render("test", camera=EYE, suns=SUNS, medium=MEDIUM)
+    assert (views[2].camera, views[2].suns, views[2].medium) == (EYE, SUNS, MEDIUM)
+
+
+def test_a_real_scene_comes_in_any_size() -> None:
+    assert "man-10" in scenes.SCENES
+    picture = render("man-10", width=16, height=12, look=PAPER)
+    assert picture.linear.shape == (12, 16, 3)
+    assert picture.notes == ("cloud: 30 balls, densities not fitted",)
+
+
+def test_an_unknown_scene_is_refused_with_all_names() -> None:
+    with pytest.raises(ValueError, match=r"^scene: expected one of [^\n]*$") as caught:
+        render("no-such")
+    text = str(caught.value)
+    assert all(name in text for name in SCENES)
+    assert "'no-such'" in text
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: render("cumulus", background=[0, 0, 0]), "background: expected none"),
+        (
+            lambda: render("cumulus", haze=Haze([0, 0, 0], 1.0)),
+            "haze: expected none",
+        ),
+        (
+            lambda: render("cumulus", width=10**6, height=10**6),
+            "width: expected at most",
+        ),
+        (lambda: render(BALLS, width=10**6, height=10**6), "width: expected at most"),
+        (lambda: render(BALLS, width=0), "width: expected"),
+        (
+            lambda: render(BALLS, background=np.ones((9, 9, 3)), **HOW),
+            "background: exp",
+        ),
+        (lambda: render(BALLS, background=[-1, 0, 0], **HOW), "background: expected"),
+        (lambda: render(BALLS, background="stars", **HOW), "background: expected"),
+        (lambda: render(BALLS, look="foam"), "look: expected a Look or one of"),  # type: ignore[arg-type]
+        (lambda: render(BALLS, tolerance=2.0), "tolerance: expected"),
+        (lambda: render(BALLS, quality="best"), "quality: expected"),  # type: ignore[arg-type]
+    ],
+)
+def test_refusals_name_the_argument_in_one_line(call, message: str) -> None:
+    with pytest.raises(ValueError, match=rf"^{message}[^\n]*$"):
+        call()
+
+
+def test_what_is_no_cloud_is_refused() -> None:
+    with pytest.raises(TypeError, match=r"^cloud: expected [^\n]*$"):
+        render(3.0)  # type: ignore[arg-type]
+
+
+def test_a_camera_far_off_sees_only_the_background() -> None:
+    away = Camera([1e6, 0, 0], [2e6, 0, 0], width=4, height=3)
+    picture = render(BALLS, **(HOW | {"camera": away}), background=[0.2, 0.2, 0.2])
+    assert (picture.linear == 0.2).all()
