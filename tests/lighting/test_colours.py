@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_scenes import BALLS, DARK, EXTENDED, EYE, MEDIUM, PAPER, SUNS
 from twins.lighting import clouds, looks, media, suns_of
@@ -39,6 +39,7 @@ def test_the_papers_rules_have_every_extension_off() -> None:
     assert not any(off)
 
 
+@settings(max_examples=40)
 @given(clouds(), suns_of(), media, looks)
 def test_colours_are_finite_and_never_negative(balls, suns, medium, look) -> None:
     lit = sunward(balls, suns, medium=medium, look=look)

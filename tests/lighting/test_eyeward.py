@@ -30,7 +30,7 @@ from refcloud.raster import transmittance
 
 ADDED = 1e-12  # of the brightest, for sums of a few dozen terms in another order
 every_look = pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS)
-some = settings(max_examples=40)
+some = settings(max_examples=25)
 
 
 def same(actual: np.ndarray, expected: np.ndarray) -> None:

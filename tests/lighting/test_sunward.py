@@ -22,6 +22,7 @@ from refcloud.optics import (
     scattered_split,
 )
 
+some = settings(max_examples=25)
 ROUNDED = 1e-12  # of the largest light: chains of up to ten sums and products
 WHITE = Sun([0.3, 1.0, 0.2], [1, 1, 1])
 balls_in_any_order = st.permutations(range(len(BALLS)))
@@ -37,6 +38,7 @@ def listed_as(balls: Metaballs, order: list[int]) -> Metaballs:
     )
 
 
+@some
 @given(clouds(6), media, looks, seeds)
 def test_e23_no_ball_gets_more_than_the_sun_sends(balls, medium, look, seed) -> None:
     way = np.array([seed % 7, 3.0, seed % 5]) - 1.5
@@ -118,6 +120,7 @@ def test_in_the_papers_rule_a_split_ball_hands_on_less() -> None:
         assert lit.light[0, -1, 0] == pytest.approx(each**n, rel=1e-12)
 
 
+@some
 @given(clouds(5), suns_of(3), media, looks)
 def test_each_sun_is_carried_by_itself(balls, suns, medium, look) -> None:
     together = sunward(balls, suns, medium=medium, look=look)
@@ -128,6 +131,7 @@ def test_each_sun_is_carried_by_itself(balls, suns, medium, look) -> None:
         np.testing.assert_array_equal(alone.ambient, together.ambient)
 
 
+@some
 @given(clouds(5), media, looks, st.floats(0.0, 4.0))
 def test_light_is_proportional_to_the_sun(balls, medium, look, factor) -> None:
     once, more = (
@@ -179,6 +183,7 @@ def test_e26_balls_are_lit_from_the_nearest_on() -> None:
     assert buffer.pixels.shape == (16, 16, 4)
 
 
+@some
 @given(clouds(5), looks, st.floats(-0.9, 0.9))
 def test_e26_light_is_stored_before_the_phase_function(balls, look, g) -> None:
     plain, lobed = (
@@ -188,6 +193,7 @@ def test_e26_light_is_stored_before_the_phase_function(balls, look, g) -> None:
     np.testing.assert_array_equal(plain.light, lobed.light)
 
 
+@some
 @given(seeds, st.lists(st.floats(0.0, 4.0), min_size=3, max_size=3), looks)
 def test_a_coloured_medium_is_three_grey_ones(seed, sigma_t, look) -> None:
     balls = scattered_balls(seed, 4)
@@ -202,6 +208,7 @@ def test_a_coloured_medium_is_three_grey_ones(seed, sigma_t, look) -> None:
         )
 
 
+@some
 @given(clouds(5), media, looks)
 def test_dark_lights_give_nothing(balls, medium, look) -> None:
     rules = dataclasses.replace(look, **DARK)

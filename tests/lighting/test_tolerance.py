@@ -40,7 +40,7 @@ def error_and_rows(balls, suns, medium, look, tolerance, background, haze):
     return np.abs(found - exact).max() - ROUNDED * scale, rows
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(clouds(8), suns_of(), media, looks, tolerances, backdrops, hazes)
 def test_the_error_never_exceeds_the_tolerance(
     balls, suns, medium, look, tolerance, background, haze
