@@ -1,0 +1,70 @@
+"""The README names what exists, and its examples run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import refcloud
+import refcloud.lighting
+import refcloud.metaballs
+import refcloud.noise
+import refcloud.raster
+
+README = (Path(__file__).parent.parent / "README.md").read_text("utf-8")
+ROOMS = (
+    refcloud,
+    refcloud.noise,
+    refcloud.cloudmap,
+    refcloud.metaballs,
+    refcloud.optics,
+    refcloud.lighting,
+)
+
+
+def test_every_function_of_the_equations_exists() -> None:
+    table = README.split("| stage |")[1].split("\n\n")[0]
+    names = re.findall(r"`([A-Za-z_0-9.]+)", table)
+    assert len(names) > 15
+    for name in names:
+        last = name.rsplit(".", 1)[-1]
+        found = any(hasattr(room, last) for room in (*ROOMS, refcloud.raster))
+        assert found, f"README: {name} does not exist"
+
+
+def test_every_field_of_the_looks_exists() -> None:
+    table = README.split("| | field of `Look` |")[1].split("\n\n")[0]
+    cells = [line.split("|")[2] for line in table.splitlines()[2:]]
+    names = [name for cell in cells for name in re.findall(r"`(\w+)`", cell)]
+    assert len(names) > 8
+    for name in names:
+        assert name in refcloud.Look.__dataclass_fields__, name
+
+
+def test_the_examples_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # Smaller than the reader's: the same calls on a small cloud and a small picture.
+    monkeypatch.chdir(tmp_path)
+    small = {"diameters": [20, 11, 11], "relief": 2, "cell": 3}
+    generate, render = refcloud.generate, refcloud.render
+    monkeypatch.setattr(refcloud, "generate", lambda **k: generate(**k, **small))
+    monkeypatch.setattr(
+        refcloud, "render", lambda *a, **k: render(*a, **k, width=64, height=48)
+    )
+    monkeypatch.setattr(
+        refcloud,
+        "approximate",
+        lambda grid, count: refcloud.metaballs.approximate(grid, count=count // 20),
+    )
+    names: dict[str, object] = {}
+    for block in re.findall(r"```python\n(.*?)```", README, re.DOTALL):
+        exec(compile(block, "README.md", "exec"), names)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "cloud.png",
+        "smooth.png",
+        "beer.png",
+    }
+    assert "medium: sigma_t" in capsys.readouterr().out
