@@ -18,6 +18,10 @@ from refcloud.noise.interpolate import (
 from refcloud.noise.lattice import smoothed
 from refcloud.noise.value import value, value_grid
 from refcloud.noise.weights import taps
+from refcloud.noise.worley import worley
+from refcloud.noise.worley_cells import worley_bound, worley_points
+from refcloud.noise.worley_drawn import worley_drawn
+from refcloud.noise.worley_grid import worley_grid
 
 __all__ = [
     "catmull_rom",
@@ -38,4 +42,9 @@ __all__ = [
     "uniform",
     "value",
     "value_grid",
+    "worley",
+    "worley_bound",
+    "worley_drawn",
+    "worley_grid",
+    "worley_points",
 ]

@@ -1,0 +1,287 @@
+"""Worley noise on a grid: whole planes of samples meet one neighbour cell at a time.
+
+All cells that hold as many samples along each axis are laid side by side, on the last
+axis of every array. For each of the 9 or 27 neighbours the squares of the distances
+along x, y and z are few (samples per cell, not samples), and one sum and one minimum of
+long rows are all that each sample costs. Those few samples whose nearest point may lie
+beyond the neighbours are looked at again, one by one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refcloud.checking import checked
+from refcloud.conventions import Array, Seed, Shape
+from refcloud.noise.lattice import Cells
+from refcloud.noise.worley_cells import (
+    DType,
+    Feature,
+    Period,
+    Reals,
+    Scale,
+    Search,
+    _offsets,
+    _scaled,
+    _split,
+    _wrapped,
+)
+from refcloud.noise.worley_search import _lattice, _look_further
+
+TABLE = 1 << 15  # cells of a block times samples along an axis: tables of 10 to 20 MB
+TILE = 1 << 16  # samples in one step: sum and minimum stay in a core's cache
+LONGEST_RUN = 32  # samples of one cell along one axis that are laid in one run
+RUN_COST = 2.0  # what a run costs beside its samples, in samples (measured)
+
+
+@checked
+def worley_grid(
+    x: Annotated[Array, Shape("W")],
+    y: Annotated[Array, Shape("H")],
+    z: Annotated[Array, Shape("D")] | None = None,
+    *,
+    seed: Seed = 0,
+    period: Period | None = None,
+    feature: Feature = "F1",
+    search: Search = "exact",
+    normalize: Scale = "none",
+    dtype: DType = "float64",
+) -> Reals:
+    """Give Worley noise on a grid: `worley` at every place, many times faster.
+
+    Formula: F[k, j, i] = the smallest or second smallest of dx[i]^2 + dy[j]^2 + dz[k]^2
+    over the points of the cells around, square root of it
+
+    Parameters
+    ----------
+    x, y, z
+        Coordinates along each axis, in cells. Any order, any spacing, finite: the
+        number of samples and the size of the cells have nothing to do with each other.
+        Without z the noise is that of the plane.
+    seed
+        Which pattern.
+    period
+        After how many cells the pattern repeats, along every axis. None does not
+        repeat (but at 2^32, as all noise here).
+    feature
+        Distance to the nearest point, "F1", or to the second nearest, "F2". Of a
+        pattern that repeats, each copy of a point counts.
+    search
+        Which cells are looked at. "exact" as many as it needs; "neighbours" the own
+        cell and those around it, up to sqrt(n) - 1 too far (E32).
+    normalize
+        What becomes of the distance. "none" leaves it, in cells; "bound" divides by the
+        largest possible one, "inverted" takes that from 1; "clip" cuts at one cell.
+    dtype
+        Type of the arithmetic and the result: "float64" or "float32".
+
+    Returns
+    -------
+    Shape (D, H, W) as [z, y, x], or (H, W) as [y, x].
+
+    Source: document D (N26-N29); E32, E33.
+
+    Examples
+    --------
+    >>> worley_grid(np.arange(4) / 2, np.arange(3) / 2, seed=7, period=2).shape
+    (3, 4)
+    """
+    axes = [_runs(c, period) for c in ((x, y) if z is None else (x, y, z))]
+    shape = tuple(axis.size for axis in reversed(axes))
+    out: Reals = np.empty(shape, dtype)
+    if out.size:
+        most = max(1, TABLE // max(axis.samples for axis in axes))
+        doubtful: list[_Doubtful] = []
+        for block in _blocks(axes, most):
+            doubtful += _fill(out, block, seed, period, feature == "F2")
+            if search == "neighbours":
+                doubtful.clear()
+        if doubtful:
+            _repair(out, doubtful, seed, period)
+    return _scaled(out, feature, len(axes), normalize)
+
+
+@dataclass(frozen=True)
+class _Runs:
+    """One axis of a grid: samples of the same cell in runs of one length.
+
+    A run that is shorter than the others is filled up with its last sample.
+    """
+
+    size: int  # samples of the whole axis
+    cells: Cells  # cell of each run, shape (R,)
+    index: NDArray[np.intp]  # place of each sample on the axis, shape (samples, R)
+    places: Array  # its place in the cell, shape (samples, R)
+
+    @property
+    def samples(self) -> int:
+        return len(self.index)
+
+    def part(self, chosen: slice) -> _Runs:
+        index, places = self.index[:, chosen], self.places[:, chosen]
+        return _Runs(self.size, self.cells[chosen], index, places)
+
+    def target(self) -> slice | NDArray[np.intp]:
+        """Give where the samples go, run by run; a slice where they lie in order."""
+        flat = self.index.T.ravel()
+        if np.array_equal(flat, np.arange(flat[0], flat[0] + flat.size)):
+            return slice(int(flat[0]), int(flat[0]) + flat.size)
+        return flat
+
+
+def _runs(coordinates: Array, period: int | None) -> _Runs:
+    """Sort an axis by cell, and cut it in runs of the length that wastes least."""
+    cells, places = _split(coordinates, period)
+    order = np.argsort(cells, kind="stable")
+    own, first, counts = np.unique(cells[order], return_index=True, return_counts=True)
+    lengths = np.arange(1, min(LONGEST_RUN, int(counts.max(initial=1))) + 1)
+    needed = -(-counts // lengths[:, np.newaxis])  # runs of each cell, by length
+    length = int(lengths[np.argmin(needed.sum(axis=1) * (lengths + RUN_COST))])
+    runs = needed[length - 1]
+    # Number the runs within their cell, and fill the last of each.
+    number = np.arange(runs.sum()) - np.repeat(np.cumsum(runs) - runs, runs)
+    within = number * length + np.arange(length)[:, np.newaxis]
+    index = order[
+        np.repeat(first, runs) + np.minimum(within, np.repeat(counts, runs) - 1)
+    ]
+    return _Runs(coordinates.size, np.repeat(own, runs), index, places[index])
+
+
+def _blocks(axes: list[_Runs], most: int) -> list[list[_Runs]]:
+    """Cut the runs of all axes in blocks of at most so many cells, near to cubes."""
+    lengths: list[int] = []
+    for axis in axes[::-1]:  # what z and y leave goes to x, whose rows are written
+        left = most // math.prod(lengths)
+        share = int(left ** (1.0 / (len(axes) - len(lengths))) + 1e-9)
+        lengths.append(max(1, min(len(axis.cells), share)))
+    blocks: list[list[_Runs]] = [[]]
+    for axis, length in zip(axes, lengths[::-1], strict=True):
+        starts = range(0, len(axis.cells), length)
+        parts = [axis.part(slice(start, start + length)) for start in starts]
+        blocks = [[*block, part] for part in parts for block in blocks]
+    return blocks
+
+
+def _fill(
+    out: Reals, axes: list[_Runs], seed: int, period: int | None, second: bool
+) -> list[_Doubtful]:
+    """Fill a block of the output from the neighbours, and list what may be nearer."""
+    squares = _squares(axes, seed, period, out.dtype)
+    across, along = squares[1], squares[0]
+    rows, length, cells = across.shape[1], along.shape[1], along.shape[2]
+    found = [np.empty((rows, length, cells), out.dtype) for _ in range(1 + second)]
+    step = max(1, TILE // (length * cells))
+    doubtful = []
+    for plane in range(axes[2].samples if len(axes) == 3 else 1):
+        if len(axes) == 3:
+            across = squares[1] + squares[2][:, plane, np.newaxis]
+        for first in range(0, rows, step):
+            part = slice(first, first + step)
+            _sweep([f[part] for f in found], along, across[:, part])
+        doubtful.append(_doubtful(found, axes, plane))
+        _write(out, np.sqrt(found[-1]), axes, plane)
+    return doubtful
+
+
+def _squares(
+    axes: list[_Runs], seed: int, period: int | None, dtype: np.dtype
+) -> list[Reals]:
+    """Give the squared distances along each axis, as (neighbour, sample, cell).
+
+    Cells are all combinations of the axes' runs, x fastest.
+    """
+    n = len(axes)
+    # Hash the points of the block's cells and their neighbours, each once.
+    around = [axis.cells + np.array([[-1], [0], [1]]) for axis in axes]
+    lines = [np.unique(near) for near in around]
+    points = _lattice([_wrapped(line, period) for line in lines], seed, dtype)
+    where = [np.searchsorted(*pair) for pair in zip(lines, around, strict=True)]
+    cells = math.prod(len(axis.cells) for axis in axes)
+    steps = _offsets(n, 1)
+    squares = [np.empty((len(steps), a.samples, cells), dtype) for a in axes]
+    for i, step in enumerate(steps):
+        wanted = np.ix_(*(where[axis][step[axis] + 1] for axis in reversed(range(n))))
+        for axis, s in enumerate(step):
+            point = points[axis][wanted]
+            place = (s - axes[axis].places.astype(dtype)).reshape(
+                -1, *(len(a.cells) if a is axes[axis] else 1 for a in axes[::-1])
+            )
+            distance = (place + point).reshape(-1, cells)
+            np.multiply(distance, distance, out=squares[axis][i])
+    return squares
+
+
+def _sweep(found: list[Reals], along: Reals, across: Reals) -> None:
+    """Keep the smallest (and second smallest) sum of squares over the neighbours."""
+    first = found[0]
+    sums, larger = np.empty_like(first), np.empty_like(first)
+    for f in found:
+        f.fill(np.inf)
+    for i in range(len(along)):
+        np.add(along[i], across[i][:, np.newaxis], out=sums)
+        if len(found) == 2:
+            np.maximum(first, sums, out=larger)
+            np.minimum(found[1], larger, out=found[1])
+        np.minimum(first, sums, out=first)
+
+
+@dataclass(frozen=True)
+class _Doubtful:
+    """Samples that a point beyond the neighbours may be nearer to."""
+
+    place: NDArray[np.intp]  # in the output, along each axis, shape (n, N)
+    found: Reals  # squares of the distances found, shape (1 or 2, N)
+    cells: Cells  # their cells, shape (n, N)
+    t: Array  # their places in their cells, shape (n, N)
+
+
+def _doubtful(found: list[Reals], axes: list[_Runs], plane: int) -> _Doubtful:
+    # No face is nearer than one cell: few samples need their own face looked at.
+    y, x, cell = np.nonzero(found[-1] > 1)
+    sample = [x, y, np.full_like(x, plane)]
+    runs = np.unravel_index(cell, [len(a.cells) for a in axes[::-1]])[::-1]
+    t = np.array([a.places[s, r] for a, s, r in zip(axes, sample, runs, strict=False)])
+    far = found[-1][y, x, cell] > (1.0 + np.minimum(t, 1.0 - t).min(axis=0)) ** 2
+    chosen = [(a, s[far], r[far]) for a, s, r in zip(axes, sample, runs, strict=False)]
+    return _Doubtful(
+        np.array([a.index[s, r] for a, s, r in chosen]),
+        np.array([f[y[far], x[far], cell[far]] for f in found]),
+        np.array([a.cells[r] for a, _, r in chosen]),
+        t[:, far],
+    )
+
+
+def _repair(
+    out: Reals, doubtful: list[_Doubtful], seed: int, period: int | None
+) -> None:
+    """Look further for the doubtful samples, and write what is nearer."""
+    place, found, cells, t = (
+        np.concatenate([getattr(d, name) for d in doubtful], axis=1)
+        for name in ("place", "found", "cells", "t")
+    )
+    _look_further(list(found), cells, t.astype(out.dtype), seed, period)
+    out[tuple(place[::-1])] = np.sqrt(found[-1])
+
+
+def _write(out: Reals, plane: Reals, axes: list[_Runs], k: int) -> None:
+    """Write a plane of samples, (sample y, sample x, cell), where it belongs."""
+    x, y = axes[:2]
+    shape = (y.samples, x.samples, -1, len(y.cells), len(x.cells))
+    values = plane.reshape(shape).transpose(2, 3, 0, 4, 1)  # layer, then y, then x
+    layers = axes[2].index[k] if len(axes) == 3 else np.zeros(1, np.intp)
+    target = out if len(axes) == 3 else out[np.newaxis]
+    wy, wx = y.target(), x.target()
+    if isinstance(wy, slice) and isinstance(wx, slice):
+        for layer, value in zip(layers, values, strict=True):
+            target[layer, wy, wx].reshape(value.shape)[...] = value
+    else:
+        rows, columns = (
+            np.arange(w.start, w.stop) if isinstance(w, slice) else w for w in (wy, wx)
+        )
+        flat = values.reshape(len(layers), rows.size, columns.size)
+        target[np.ix_(layers, rows, columns)] = flat
