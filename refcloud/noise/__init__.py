@@ -16,6 +16,14 @@ from refcloud.noise.interpolate import (
     quintic,
 )
 from refcloud.noise.lattice import smoothed
+from refcloud.noise.sheet import (
+    cloud_sheet,
+    exponential_filter,
+    overlap_octaves,
+    sheet_map,
+    wrap_halo,
+    wrapped_bilinear,
+)
 from refcloud.noise.value import value, value_grid
 from refcloud.noise.weights import taps
 from refcloud.noise.worley import worley
@@ -25,9 +33,11 @@ from refcloud.noise.worley_grid import worley_grid
 
 __all__ = [
     "catmull_rom",
+    "cloud_sheet",
     "cosine",
     "cubic",
     "elias2d",
+    "exponential_filter",
     "hermite",
     "lattice_random",
     "linear",
@@ -36,7 +46,9 @@ __all__ = [
     "octave_frame",
     "octave_sum",
     "octave_sum_grid",
+    "overlap_octaves",
     "quintic",
+    "sheet_map",
     "smoothed",
     "taps",
     "uniform",
@@ -47,4 +59,6 @@ __all__ = [
     "worley_drawn",
     "worley_grid",
     "worley_points",
+    "wrap_halo",
+    "wrapped_bilinear",
 ]
