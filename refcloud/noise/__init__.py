@@ -21,14 +21,8 @@ from refcloud.noise.interpolate import (
 from refcloud.noise.lattice import smoothed
 from refcloud.noise.mixing import lattice_bits, permutation_table
 from refcloud.noise.remap import remap
-from refcloud.noise.sheet import (
-    cloud_sheet,
-    exponential_filter,
-    overlap_octaves,
-    sheet_map,
-    wrap_halo,
-    wrapped_bilinear,
-)
+from refcloud.noise.sheet import cloud_sheet, exponential_filter, overlap_octaves
+from refcloud.noise.sheet_map import sheet_map, wrap_halo, wrapped_bilinear
 from refcloud.noise.smooth import smooth, smooth_grid
 from refcloud.noise.value import value, value_grid
 from refcloud.noise.weights import taps

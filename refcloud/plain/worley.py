@@ -5,7 +5,6 @@ Each function is the twin of the one of the same name in `refcloud.noise`.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 
@@ -17,6 +16,14 @@ def worley_bound(dimensions: int, feature: str) -> float:
     if feature == "F2" and dimensions == 2:
         return math.hypot(1.5, 0.5)
     return math.dist([0.0] * dimensions, [1.0] * dimensions)
+
+
+def steps(dimensions: int, lowest: int, highest: int) -> list[tuple[int, ...]]:
+    """List all steps whose length along each axis lies between two."""
+    if dimensions == 0:
+        return [()]
+    along = range(lowest, highest + 1)
+    return [(*s, a) for s in steps(dimensions - 1, lowest, highest) for a in along]
 
 
 def worley_points(
@@ -44,7 +51,7 @@ def worley(
     t = [c - h for c, h in zip(place, home, strict=True)]
     reach = 2 if search == "exact" else 1
     distances = []
-    for step in itertools.product(range(-reach, reach + 1), repeat=len(t)):
+    for step in steps(len(t), -reach, reach):
         cell = [h + s for h, s in zip(home, step, strict=True)]
         q = worley_points(*cell, seed=seed, period=period)
         distances.append(math.dist(t, [s + c for s, c in zip(step, q, strict=True)]))

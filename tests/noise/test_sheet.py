@@ -45,7 +45,7 @@ def test_range_of_the_map(seed, size, source) -> None:
 
 def test_e31_256_is_reached_and_four_octaves_reach_480(monkeypatch) -> None:
     # Hash bits 0 give the number 1: grey level 256, which no byte holds.
-    sheet = importlib.import_module("refcloud.noise.sheet")
+    sheet = importlib.import_module("refcloud.noise.sheet_map")
     monkeypatch.setattr(sheet, "elias2d", lambda x, y, seed: np.ones((x + y).shape))
     values = sheet.sheet_map(4)
     assert (values == 256.0).all()

@@ -167,7 +167,7 @@ def test_blocks_runs_and_tiles_do_not_show(data, n, how, table, run) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module("worley_grid"), "TABLE", table)
         patch.setattr(module("worley_grid"), "TILE", table)
-        patch.setattr(module("worley_grid"), "LONGEST_RUN", run)
+        patch.setattr(module("worley_runs"), "LONGEST_RUN", run)
         np.testing.assert_array_equal(worley_grid(*lines, **how), whole)
 
 
