@@ -23,6 +23,8 @@ from refcloud.noise.mixing import lattice_bits, permutation_table
 from refcloud.noise.remap import remap
 from refcloud.noise.sheet import cloud_sheet, exponential_filter, overlap_octaves
 from refcloud.noise.sheet_map import sheet_map, wrap_halo, wrapped_bilinear
+from refcloud.noise.simplex import simplex, simplex_derivative
+from refcloud.noise.simplex_grid import simplex_grid
 from refcloud.noise.smooth import smooth, smooth_grid
 from refcloud.noise.value import value, value_grid
 from refcloud.noise.weights import taps
@@ -57,6 +59,9 @@ __all__ = [
     "quintic",
     "remap",
     "sheet_map",
+    "simplex",
+    "simplex_derivative",
+    "simplex_grid",
     "smooth",
     "smooth_grid",
     "smoothed",
