@@ -30,8 +30,9 @@ from refcloud.noise.worley_cells import (
     _scaled,
     _wrapped,
 )
+from refcloud.noise.worley_ring import _look_further
 from refcloud.noise.worley_runs import _blocks, _Runs, _runs
-from refcloud.noise.worley_search import _lattice, _look_further
+from refcloud.noise.worley_search import _lattice
 
 TABLE = 1 << 15  # cells of a block times samples along an axis: tables of 10 to 20 MB
 TILE = 1 << 16  # samples in one step: sum and minimum stay in a core's cache

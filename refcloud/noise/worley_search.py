@@ -23,6 +23,7 @@ from refcloud.noise.worley_cells import (
     _split,
     _wrapped,
 )
+from refcloud.noise.worley_ring import _keep, _look_further, _squared_length
 
 CHUNK = 1 << 13  # scattered points at a time: their temporaries fit a core's cache
 HASHED_CHUNK = 1 << 11  # of them, where each hashes the points of its own cells
@@ -143,60 +144,3 @@ def _hashed(
     """Give the points of cells, axis first."""
     words = [_wrapped(c, period).astype(np.uint64) for c in cells]
     return _places(words, seed).astype(dtype, copy=False)
-
-
-def _squared_length(q: list[Reals]) -> Reals:
-    """Square and add along the axes, x last, in place."""
-    for component in q:
-        component *= component
-    total = q[-1]
-    for component in q[-2::-1]:
-        total += component
-    return total
-
-
-def _keep(found: list[Reals], squared: Reals, second: bool) -> None:
-    """Let a distance take its place among the smallest one or two."""
-    if not found:
-        found.append(squared)
-    elif not second:
-        np.minimum(found[0], squared, out=found[0])
-    elif len(found) == 1:
-        found.append(np.maximum(found[0], squared))
-        np.minimum(found[0], squared, out=found[0])
-    else:
-        larger = np.maximum(found[0], squared)
-        np.minimum(found[0], squared, out=found[0])
-        np.minimum(found[1], larger, out=found[1])
-
-
-def _look_further(
-    found: list[Reals], cells: Cells, t: Reals, seed: int, period: int | None
-) -> None:
-    """Meet the ring of cells beyond the neighbours where a point there may be nearer.
-
-    Cells and places are axis first, shape (n, N).
-    """
-    face = 1 + np.minimum(t, 1 - t).min(axis=0)
-    (far,) = np.nonzero(found[-1] > face * face)
-    if not far.size:
-        return
-    t, cells = t[:, far], cells[:, far]
-    nearest = [f[far] for f in found]
-    n, one = len(t), t.dtype.type(1)
-    # How far the cells two steps off are along each axis: 1 and the rest to the face.
-    gaps = {0: np.zeros_like(t), -2: one + t, 2: one + (one - t), -1: t, 1: one - t}
-    for step in _offsets(n, 2, beyond=1):
-        gap = _squared_length([gaps[s][axis].copy() for axis, s in enumerate(step)])
-        (some,) = np.nonzero(gap < nearest[-1])
-        if some.size:
-            near = [cells[axis, some] + s for axis, s in enumerate(step)]
-            q = list(_hashed(near, seed, period, t.dtype))
-            for axis, s in enumerate(step):
-                q[axis] += s - t[axis, some]
-            better = [f[some] for f in nearest]
-            _keep(better, _squared_length(q), second=len(found) == 2)
-            for f, b in zip(nearest, better, strict=True):
-                f[some] = b
-    for f, b in zip(found, nearest, strict=True):
-        f[far] = b

@@ -20,7 +20,7 @@ def lay(monkeypatch, n: int, place) -> None:
         signed = [((c.astype(np.int64) + 5) % 10) - 5 for c in cells]
         return place(np.array(np.broadcast_arrays(*signed)))
 
-    for name in ("worley_cells", "worley_search"):
+    for name in ("worley_cells", "worley_search", "worley_ring"):
         module = importlib.import_module(f"refcloud.noise.{name}")
         monkeypatch.setattr(module, "_places", places)
 
