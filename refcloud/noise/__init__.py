@@ -26,7 +26,8 @@ from refcloud.noise.sheet_map import sheet_map, wrap_halo, wrapped_bilinear
 from refcloud.noise.simplex import simplex, simplex_derivative
 from refcloud.noise.simplex_grid import simplex_grid
 from refcloud.noise.smooth import smooth, smooth_grid
-from refcloud.noise.value import value, value_grid
+from refcloud.noise.value import value
+from refcloud.noise.value_grid import value_grid
 from refcloud.noise.weights import taps
 from refcloud.noise.worley import worley
 from refcloud.noise.worley_cells import worley_bound, worley_points

@@ -10,8 +10,8 @@ from refcloud.plain import gradient as plain
 from twins import Draw, twin
 from twins.noise import EXACT, coordinates, drawn_wholes, seeds
 
-ROUNDED = "worst seen 2.8e-15 in 2000 examples, times 10: other order of the corners"
-STEEP = "worst seen 2.3e-14 in 2000 examples, times 10: slopes of the fade reach 1.9"
+ROUNDED = "worst seen 2.4e-15 in 600 examples, times 12: other order of the corners"
+STEEP = "worst seen 4.4e-15 in 600 examples, times 11: slopes of the fade reach 1.9"
 
 hashes = st.sampled_from(["mixed", "table"])
 fades = st.sampled_from(["quintic", "hermite"])
@@ -73,7 +73,7 @@ def gradient(draw):
     return array.gradient(np.array(at), **how), expected
 
 
-@twin(array.gradient_derivative, plain.gradient_derivative, tolerance=2e-13, why=STEEP)
+@twin(array.gradient_derivative, plain.gradient_derivative, tolerance=5e-14, why=STEEP)
 def gradient_derivative(draw):
     at, how = drawn(draw)
     noise, slope = array.gradient_derivative(np.array(at), **how)
