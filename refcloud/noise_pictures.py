@@ -85,7 +85,7 @@ def noise_picture(
     >>> noise_picture("worley_f1", size=16, octaves=2, view="octaves").linear.shape
     (34, 34, 3)
     """
-    along = (np.arange(size) + 0.5) * (cells / size)
+    along: Array = np.asarray((np.arange(size) + 0.5) * (cells / size), np.float64)
     if view == "slice":
         return _shown([[_slice(kind, along, octaves, seed)]])
     if view == "channels":

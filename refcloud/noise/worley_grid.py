@@ -10,15 +10,12 @@ beyond the neighbours are looked at again, one by one.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed, Shape
-from refcloud.noise.lattice import Cells
 from refcloud.noise.worley_cells import (
     DType,
     Feature,
@@ -30,7 +27,7 @@ from refcloud.noise.worley_cells import (
     _scaled,
     _wrapped,
 )
-from refcloud.noise.worley_ring import _look_further
+from refcloud.noise.worley_ring import Doubtful, _face_squared, _joined, _meet_ring
 from refcloud.noise.worley_runs import _blocks, _Runs, _runs
 from refcloud.noise.worley_search import _lattice
 
@@ -95,19 +92,21 @@ def worley_grid(
     out: Reals = np.empty(shape, dtype)
     if out.size:
         most = max(1, TABLE // max(axis.samples for axis in axes))
-        doubtful: list[_Doubtful] = []
+        doubtful: list[Doubtful] = []
         for block in _blocks(axes, most):
             doubtful += _fill(out, block, seed, period, feature == "F2")
             if search == "neighbours":
                 doubtful.clear()
         if doubtful:
-            _repair(out, doubtful, seed, period)
+            far = _joined(doubtful)
+            _meet_ring(far, seed, period)
+            out[tuple(far.place[::-1])] = np.sqrt(far.found[-1])
     return _scaled(out, feature, len(axes), normalize)
 
 
 def _fill(
     out: Reals, axes: list[_Runs], seed: int, period: int | None, second: bool
-) -> list[_Doubtful]:
+) -> list[Doubtful]:
     """Fill a block of the output from the neighbours, and list what may be nearer."""
     squares = _squares(axes, seed, period, out.dtype)
     across, along = squares[1], squares[0]
@@ -121,7 +120,7 @@ def _fill(
         for first in range(0, rows, step):
             part = slice(first, first + step)
             _sweep([f[part] for f in found], along, across[:, part])
-        doubtful.append(_doubtful(found, axes, plane))
+        doubtful.append(_doubtful_of(found, axes, plane))
         _write(out, np.sqrt(found[-1]), axes, plane)
     return doubtful
 
@@ -146,10 +145,14 @@ def _squares(
         wanted = np.ix_(*(where[axis][step[axis] + 1] for axis in reversed(range(n))))
         for axis, s in enumerate(step):
             point = points[axis][wanted]
-            place = (s - axes[axis].places.astype(dtype)).reshape(
-                -1, *(len(a.cells) if a is axes[axis] else 1 for a in axes[::-1])
+            place = (
+                axes[axis]
+                .places.astype(dtype)
+                .reshape(
+                    -1, *(len(a.cells) if a is axes[axis] else 1 for a in axes[::-1])
+                )
             )
-            distance = (place + point).reshape(-1, cells)
+            distance = (point + dtype.type(s) - place).reshape(-1, cells)
             np.multiply(distance, distance, out=squares[axis][i])
     return squares
 
@@ -168,42 +171,21 @@ def _sweep(found: list[Reals], along: Reals, across: Reals) -> None:
         np.minimum(first, sums, out=first)
 
 
-@dataclass(frozen=True)
-class _Doubtful:
-    """Samples that a point beyond the neighbours may be nearer to."""
-
-    place: NDArray[np.intp]  # in the output, along each axis, shape (n, N)
-    found: Reals  # squares of the distances found, shape (1 or 2, N)
-    cells: Cells  # their cells, shape (n, N)
-    t: Array  # their places in their cells, shape (n, N)
-
-
-def _doubtful(found: list[Reals], axes: list[_Runs], plane: int) -> _Doubtful:
-    # No face is nearer than one cell: few samples need their own face looked at.
+def _doubtful_of(found: list[Reals], axes: list[_Runs], plane: int) -> Doubtful:
+    """Find the doubtful samples of a plane, as `refcloud.noise.worley_ring` does."""
     y, x, cell = np.nonzero(found[-1] > 1)
     sample = [x, y, np.full_like(x, plane)]
     runs = np.unravel_index(cell, [len(a.cells) for a in axes[::-1]])[::-1]
     t = np.array([a.places[s, r] for a, s, r in zip(axes, sample, runs, strict=False)])
-    far = found[-1][y, x, cell] > (1.0 + np.minimum(t, 1.0 - t).min(axis=0)) ** 2
+    t = t.astype(found[0].dtype, copy=False)
+    far = found[-1][y, x, cell] > _face_squared(t)
     chosen = [(a, s[far], r[far]) for a, s, r in zip(axes, sample, runs, strict=False)]
-    return _Doubtful(
+    return Doubtful(
         np.array([a.index[s, r] for a, s, r in chosen]),
         np.array([f[y[far], x[far], cell[far]] for f in found]),
         np.array([a.cells[r] for a, _, r in chosen]),
         t[:, far],
     )
-
-
-def _repair(
-    out: Reals, doubtful: list[_Doubtful], seed: int, period: int | None
-) -> None:
-    """Look further for the doubtful samples, and write what is nearer."""
-    place, found, cells, t = (
-        np.concatenate([getattr(d, name) for d in doubtful], axis=1)
-        for name in ("place", "found", "cells", "t")
-    )
-    _look_further(list(found), cells, t.astype(out.dtype), seed, period)
-    out[tuple(place[::-1])] = np.sqrt(found[-1])
 
 
 def _write(out: Reals, plane: Reals, axes: list[_Runs], k: int) -> None:

@@ -23,9 +23,17 @@ from refcloud.noise.worley_cells import (
     _split,
     _wrapped,
 )
-from refcloud.noise.worley_ring import _keep, _look_further, _squared_length
+from refcloud.noise.worley_lists import Lists, _paying_parts
+from refcloud.noise.worley_ring import (
+    Doubtful,
+    _doubtful,
+    _joined,
+    _keep,
+    _meet_ring,
+    _squared_length,
+)
 
-CHUNK = 1 << 13  # scattered points at a time: their temporaries fit a core's cache
+CHUNK = 1 << 15  # scattered points at a time: their temporaries fit a core's cache
 HASHED_CHUNK = 1 << 11  # of them, where each hashes the points of its own cells
 MOST_TABLE = 1 << 20  # cells whose points are kept in a table: 24 MB in space
 FEW = 64  # cells that are worth a table, however few the points
@@ -40,20 +48,35 @@ def _scattered(
     dtype: np.dtype,
 ) -> Reals:
     """Give F1, or F2 where second, at points of shape (N, n)."""
-    out = np.full(len(points), np.nan, dtype)
-    finite = np.asarray(np.isfinite(points).all(axis=1))
-    table = _table(points[finite], seed, period, dtype)
+    out: Reals = np.full(len(points), np.nan, dtype)
+    finite = np.isfinite(points[:, 0])
+    for column in points.T[1:]:
+        finite = finite & np.isfinite(column)
+    where = np.flatnonzero(finite)
+    if not where.size:
+        return out
+    whole = points if where.size == len(points) else points[where]
+    found = np.empty(where.size, dtype)
+    table = _table(whole, seed, period, dtype)
+    lists = _lists(table, where.size, second) if table else None
     step = CHUNK if table else HASHED_CHUNK
-    for first in range(0, len(points), step):
-        chosen = finite[first : first + step]
-        axes = points[first : first + step][chosen].T
-        if axes.size:
-            cells, places = zip(*(_split(c.copy(), period) for c in axes), strict=True)
-            t = [place.astype(dtype) for place in places]
-            found = _nearest(cells, t, table, seed, period, second)
-            if exact:
-                _look_further(found, np.array(cells), np.array(t), seed, period)
-            out[first : first + step][chosen] = np.sqrt(found[-1])
+    doubtful: list[Doubtful] = []
+    for first in range(0, where.size, step):
+        axes = np.ascontiguousarray(whole[first : first + step].T)
+        cells, places = zip(*(_split(c, period) for c in axes), strict=True)
+        t = [place.astype(dtype, copy=False) for place in places]
+        if lists:
+            squares = lists.nearest(cells, t, second)
+        else:
+            squares = _nearest(cells, t, table, seed, period, second)
+        if exact:
+            doubtful.append(_doubtful(squares, cells, t, first))
+        found[first : first + step] = np.sqrt(squares[-1])
+    if doubtful:
+        far = _joined(doubtful)
+        _meet_ring(far, seed, period)
+        found[far.place] = np.sqrt(far.found[-1])
+    out[where] = found
     return out
 
 
@@ -74,6 +97,7 @@ class _Table:
         ]
         self.places = _lattice(lines, seed, dtype).reshape(len(lows), -1)
         self.lows = lows
+        self.counts = counts
         self.strides = [math.prod(counts[:axis]) for axis in range(len(counts))]
 
     def index(self, cells: tuple[Cells, ...]) -> NDArray[np.intp]:
@@ -88,11 +112,9 @@ def _table(
     points: Array, seed: int, period: int | None, dtype: np.dtype
 ) -> _Table | None:
     """Hash the box of all points once, if it is small beside their number."""
-    if not points.size:
-        return None
     most = WHOLE if period is None else period
     lows, counts = [], []
-    for low, high in zip(points.min(axis=0), points.max(axis=0), strict=True):
+    for low, high in ((float(c.min()), float(c.max())) for c in points.T):
         if max(-low, high) >= most:  # reduced, with their sign, into (-most, most)
             low, high = (-most if low < 0.0 else 0), (most if high > 0.0 else 0)
         lows.append(math.floor(low) - 1)
@@ -101,6 +123,26 @@ def _table(
     if size > min(MOST_TABLE, max(FEW, 4 * len(points))):
         return None
     return _Table(lows, counts, seed, period, dtype)
+
+
+def _lists(table: _Table, samples: int, second: bool) -> Lists | None:
+    """Cut the cells of the table in parts with short lists, where it pays."""
+    n = len(table.counts)
+    inner = [count - 2 for count in table.counts]  # without the outermost neighbours
+    parts = _paying_parts(samples, math.prod(inner), n)
+    if parts is None:
+        return None
+    corner = [low + 1 for low in table.lows]
+    inside = np.indices(inner[::-1]).reshape(n, -1)[::-1]
+    home = table.index(tuple(c + k for c, k in zip(inside, corner, strict=True)))
+    steps = np.array(_offsets(n, 1))
+    moves = np.array([sum(step * np.array(table.strides)) for step in steps])
+    near = [
+        axis.take(home[:, np.newaxis] + moves) + steps[:, i]
+        for i, axis in enumerate(table.places)
+    ]
+    near = [q.astype(table.places.dtype, copy=False) for q in near]
+    return Lists(near, corner, inner, parts, second)
 
 
 def _lattice(lines: list[Cells], seed: int, dtype: np.dtype) -> Reals:
@@ -122,7 +164,6 @@ def _nearest(
 ) -> list[Reals]:
     """Give the squares of F1 (and F2) among the own cell and its neighbours."""
     steps = _offsets(len(cells), 1)
-    relative = [[-place - 1, -place, 1 - place] for place in t]
     home = table.index(cells) if table else None
     found: list[Reals] = []
     for step in steps:
@@ -132,8 +173,9 @@ def _nearest(
         else:
             near = [c + s for c, s in zip(cells, step, strict=True)]
             q = list(_hashed(near, seed, period, t[0].dtype))
-        for axis, s in enumerate(step):
-            q[axis] += relative[axis][s + 1]
+        for component, s, place in zip(q, step, t, strict=True):
+            component += s
+            component -= place
         _keep(found, _squared_length(q), second)
     return found
 

@@ -155,6 +155,10 @@ def test_chunks_and_tables_do_not_show(data, n, how, chunk, few) -> None:
         patch.setattr(module("worley_search"), "CHUNK", chunk)
         patch.setattr(module("worley_search"), "HASHED_CHUNK", few)
         np.testing.assert_array_equal(worley(places, **how), whole)
+        patch.setattr(module("worley_lists"), "PAYS", 1e9)
+        patch.setattr(module("worley_lists"), "PARTS", (few,))
+        patch.setattr(module("worley_lists"), "BLOCK", chunk)
+        np.testing.assert_array_equal(worley(places, **how), whole)
         patch.setattr(module("worley_search"), "MOST_TABLE", 0)
         np.testing.assert_array_equal(worley(places, **how), whole)
 
