@@ -1,6 +1,8 @@
 """Noise: points or a grid to values, from integer hashes to sums of octaves."""
 
 from refcloud.noise.directions import gradient_set
+from refcloud.noise.fbm import fbm, turbulence
+from refcloud.noise.fbm_grid import fbm_grid, turbulence_grid
 from refcloud.noise.fractal import (
     octave_bound,
     octave_frame,
@@ -42,6 +44,8 @@ __all__ = [
     "cubic",
     "elias2d",
     "exponential_filter",
+    "fbm",
+    "fbm_grid",
     "gradient",
     "gradient_derivative",
     "gradient_grid",
@@ -67,6 +71,8 @@ __all__ = [
     "smooth_grid",
     "smoothed",
     "taps",
+    "turbulence",
+    "turbulence_grid",
     "uniform",
     "value",
     "value_grid",
