@@ -14,7 +14,6 @@ from refcloud.noise.fractal import (
     Normalize,
     Octaves,
     Persistence,
-    _finished,
     octave_bound,
 )
 from refcloud.noise.gradient import Period
@@ -179,7 +178,8 @@ def _sum_grid(
     _refuse(kind, len(lines), octaves, period, "z")
     bound = octave_bound(octaves, persistence)
     kept = [i for i in range(octaves) if finest is None or 2.0**-i >= finest]
-    total = np.zeros(shape, dtype)
+    scale = 1.0 / bound if normalize == "bound" else 1.0
+    total = np.zeros([line.size for line in lines[::-1]], dtype)
     for i in kept:
         own, shift = _frame(i, len(lines), seed)
         repeat = None if period is None else period << i
@@ -188,12 +188,11 @@ def _sum_grid(
             _octave_columns(line[np.newaxis], i, shift[k], wrap)[0]
             for k, line in enumerate(lines)
         ]
-        values = KINDS[kind].grid(placed, own, repeat, dtype)
-        if absolute:
-            np.abs(values, out=values)
-        values *= persistence**i
-        total += values.reshape(shape)
-    result = _finished(total, bound, normalize, False)
+        weight = scale * persistence**i
+        KINDS[kind].add(total, weight, placed, own, repeat, absolute)
+    result = total.reshape(shape)
+    if normalize == "clip":
+        np.clip(result, -1.0, 1.0, out=result)
     if len(kept) == octaves:
         return result, ()
     lost = math.fsum(persistence**i for i in range(len(kept), octaves))

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Seed
@@ -25,7 +26,6 @@ from refcloud.noise.scattered import (
     _dimensions,
     _scattered,
     _split,
-    _wrapped,
 )
 
 Period = Annotated[int, Range(1, 2**31)]
@@ -206,6 +206,14 @@ def _derivative(columns: Array, how: How) -> list[Numbers]:
     return results
 
 
+def _ends(cell: NDArray[np.int64], period: int | None) -> NDArray[Any]:
+    """Give the lattice coordinates of both ends of cells, (2, n), modulo the period."""
+    if period is None:
+        low = cell.astype(np.uint32)
+        return np.stack((low, low + np.uint32(1)))
+    return np.mod(np.stack((cell, cell + 1)), period)
+
+
 def _blended(values: Numbers, fade: Numbers) -> Numbers:
     """Blend the two ends of the last axis of corners, (..., 2, n) to (..., n)."""
     low = values[..., 0, :]
@@ -226,7 +234,7 @@ def _corners(columns: Array, how: How) -> tuple[list[Numbers], list[Numbers], Nu
     words, offsets = [], []
     for k, (cell, t) in enumerate(zip(cells, places, strict=True)):
         shape = [2 if axis == k else 1 for axis in range(len(cells))]
-        both = _wrapped(cell + ends, how.period)
+        both = _ends(cell, how.period)
         words.append(_axis_bits(both, k, how.seed, how.hash).reshape(*shape, -1))
         offsets.append((t - ends.astype(how.dtype)).reshape(*shape, -1))
     rows = np.ascontiguousarray(how.rows(), how.dtype)

@@ -1,6 +1,6 @@
 """The kinds of noise that octaves can be summed of: one plain table.
 
-Each kind has a function for points in rows and one that gives a grid. Both give values
+Each kind has a function for points in rows and one that adds a grid. Both give values
 in [-1, 1], so that every sum of octaves has the same bound.
 """
 
@@ -16,13 +16,13 @@ from refcloud.conventions import Array
 from refcloud.noise.directions import USUAL
 from refcloud.noise.gradient import How as GradientHow
 from refcloud.noise.gradient import _gradient
-from refcloud.noise.gradient_grid import gradient_grid
+from refcloud.noise.gradient_grid import _fill
 from refcloud.noise.scattered import PERIOD, Dtype, Numbers
 from refcloud.noise.simplex import WRAP, _simplex
 from refcloud.noise.simplex_grid import simplex_grid
 from refcloud.noise.value import How as ValueHow
 from refcloud.noise.value import _value
-from refcloud.noise.value_grid import value_grid
+from refcloud.noise.value_grid import _add_grid
 
 KindName = Literal["value", "gradient", "simplex"]
 Lines = list[Array]  # the coordinates along each axis of a grid
@@ -42,15 +42,16 @@ class Kind:
         What coordinates are taken modulo.
     points
         Gives noise at finite points (N, n): (columns, seed, period, dtype).
-    grid
-        Gives noise on a grid: (lines, seed, period, dtype).
+    add
+        Adds scaled noise on a grid, or its absolute value, to an array:
+        (array, scale, lines, seed, period, absolute).
     """
 
     dimensions: tuple[int, ...]
     tiles: bool
     wrap: float
     points: Callable[[Array, int, int | None, Dtype], Numbers]
-    grid: Callable[[Lines, int, int | None, Dtype], Numbers]
+    add: Callable[[Numbers, float, Lines, int, int | None, bool], None]
 
 
 def _value_points(
@@ -59,10 +60,17 @@ def _value_points(
     return _value(columns, ValueHow(seed, "quintic", True, period, dtype))
 
 
-def _value_grid(lines: Lines, seed: int, period: int | None, dtype: Dtype) -> Numbers:
+def _add_value(
+    out: Numbers,
+    scale: float,
+    lines: Lines,
+    seed: int,
+    period: int | None,
+    absolute: bool,
+) -> None:
     x, y, z = lines
-    how = {"seed": seed, "period": period, "dtype": dtype}
-    return value_grid(x, y, z, interpolant="quintic", **how)
+    how = ValueHow(seed, "quintic", True, period, _dtype(out))
+    _add_grid(out, scale, (x, y, z), how, absolute)
 
 
 def _gradient_points(
@@ -73,10 +81,20 @@ def _gradient_points(
     return _gradient(columns, how)
 
 
-def _gradient_grid(
-    lines: Lines, seed: int, period: int | None, dtype: Dtype
-) -> Numbers:
-    return gradient_grid(*lines, seed=seed, period=period, dtype=dtype)
+def _add_gradient(
+    out: Numbers,
+    scale: float,
+    lines: Lines,
+    seed: int,
+    period: int | None,
+    absolute: bool,
+) -> None:
+    def add(part: Numbers, values: Numbers) -> None:
+        part += np.abs(values, out=values) if absolute else values
+
+    name = USUAL[len(lines)]
+    how = GradientHow(seed, "quintic", name, period, "mixed", _dtype(out))
+    _fill(out, tuple(lines), how, add, scale)
 
 
 def _simplex_points(
@@ -86,15 +104,30 @@ def _simplex_points(
     return _simplex(columns, seed, "continuous", "mixed", dtype)
 
 
-def _simplex_grid(lines: Lines, seed: int, period: int | None, dtype: Dtype) -> Numbers:
+def _add_simplex(
+    out: Numbers,
+    scale: float,
+    lines: Lines,
+    seed: int,
+    period: int | None,
+    absolute: bool,
+) -> None:
     del period  # refused before
-    return simplex_grid(*lines, seed=seed, dtype=dtype)
+    values = simplex_grid(*lines, seed=seed, dtype=_dtype(out))
+    if absolute:
+        np.abs(values, out=values)
+    values *= scale
+    out += values
+
+
+def _dtype(out: Numbers) -> Dtype:
+    return "float32" if out.dtype == np.float32 else "float64"
 
 
 KINDS: dict[KindName, Kind] = {
-    "value": Kind((3,), True, PERIOD, _value_points, _value_grid),
-    "gradient": Kind((2, 3), True, PERIOD, _gradient_points, _gradient_grid),
-    "simplex": Kind((2, 3, 4), False, float(WRAP), _simplex_points, _simplex_grid),
+    "value": Kind((3,), True, PERIOD, _value_points, _add_value),
+    "gradient": Kind((2, 3), True, PERIOD, _gradient_points, _add_gradient),
+    "simplex": Kind((2, 3, 4), False, float(WRAP), _simplex_points, _add_simplex),
 }
 
 

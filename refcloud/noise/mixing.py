@@ -21,7 +21,6 @@ from refcloud.noise.hashing import _hash, _words, uniform
 
 Hash = Literal["mixed", "table"]
 Bits = NDArray[np.uint32]
-Cells = NDArray[np.int64]
 
 # Shifts and odd factors of the 32-bit mixer "lowbias32" of the hash prospector: each
 # input bit flips each output bit with a probability within 0.2 % of 1/2.
@@ -113,7 +112,7 @@ def _keys(axis: int, seed: int) -> tuple[np.uint32, np.uint32]:
     return np.uint32(both >> 32), np.uint32(both & 0xFFFFFFFF)
 
 
-def _axis_bits(cells: Cells, axis: int, seed: int, hash: Hash) -> Bits:
+def _axis_bits(cells: NDArray[Any], axis: int, seed: int, hash: Hash) -> Bits:
     """Mix one coordinate; without the second key seeds would translate."""
     bits = cells.astype(np.uint32)
     if hash == "table":

@@ -7,6 +7,7 @@ same order, so their values have the same bits.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -135,11 +136,18 @@ def _weighted(weights: Iterable[Array], values: Iterable[Array]) -> Array:
 def _box_of(points: Array, how: How) -> Box | None:
     """Hash the box of all points once, if they lie close together."""
     wrap = PERIOD if how.period is None else float(how.period)
-    if not points.size or not np.abs(points).max() < wrap:
+    if not points.size:
         return None
-    flat = points.reshape(-1, 3)
-    cells = np.floor([flat.min(axis=0), flat.max(axis=0)]).astype(np.int64)
-    return _box(cells.T, len(flat), how)
+    low, high = points.min(), points.max()
+    if not max(-low, high) < wrap:  # not so where any is NaN
+        return None
+    # A cube around all is quick to find; a tight box is looked for where that is large.
+    count = points.size // 3
+    cube = np.floor([[low, high]] * 3).astype(np.int64)
+    if box := _box(cube, count, how):
+        return box
+    ends = [(column.min(), column.max()) for column in points.reshape(-1, 3).T]
+    return _box(np.floor(ends).astype(np.int64), count, how)
 
 
 def _box(cells: Cells, points: int, how: How) -> Box | None:
@@ -172,9 +180,12 @@ def _neighbours(cells: Cells, offsets: Cells, how: How, box: Box | None) -> Numb
         ix, iy, iz = (c - low for c, low in zip(cells, box.low, strict=True))
         start = (iz * box.counts[1] + iy) * box.counts[0] + ix
         step = offsets - offsets[0]
-        rows = (step[:, None, None] * box.counts[1] + step[:, None]) * box.counts[0]
-        index = (rows + step)[..., np.newaxis] + start
-        return box.values.take(index, mode="clip")
+        f = np.empty((taps, taps, taps, n), box.values.dtype)
+        for k, j, i in itertools.product(range(taps), repeat=3):
+            ahead = (step[k] * box.counts[1] + step[j]) * box.counts[0] + step[i]
+            # A view that starts further on spares adding to every index.
+            np.take(box.values[ahead:], start, out=f[k, j, i], mode="clip")
+        return f
     # They lie far apart: every point hashes its own neighbours.
     around = np.arange(offsets[0] - halo, offsets[-1] + halo + 1)[:, np.newaxis]
     f = np.empty((taps, taps, taps, n), how.dtype)
