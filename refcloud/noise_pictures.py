@@ -13,7 +13,6 @@ from refcloud import noise
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Seed
 from refcloud.image import Picture, srgb_decode
-from refcloud.noise.simplex_grid import simplex_grid
 
 Kind = Literal[
     "value",
@@ -128,7 +127,7 @@ class Base:
 BASES = {
     "value": Base(noise.value_grid, True),
     "gradient": Base(noise.gradient_grid, True),
-    "simplex": Base(simplex_grid, True),
+    "simplex": Base(noise.simplex_grid, True),
     "worley_f1": Base(noise.worley_grid, False, {"normalize": "bound"}),
     "worley_f2": Base(
         noise.worley_grid, False, {"feature": "F2", "normalize": "bound"}

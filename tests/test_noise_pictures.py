@@ -10,8 +10,10 @@ import pytest
 from refcloud.image import srgb_encode
 from refcloud.noise import (
     cloud_sheet,
+    fbm_grid,
     octave_sum_grid,
     sheet_map,
+    turbulence_grid,
     worley_grid,
 )
 from refcloud.noise_pictures import BASES, GAP, Kind, View, noise_picture
@@ -67,6 +69,11 @@ def test_the_sums_are_those_of_the_room() -> None:
     expected, _ = octave_sum_grid(along, along, [0.5], seed=3, octaves=3)
     shown = values(noise_picture("man", size=32, octaves=3, seed=3))
     np.testing.assert_allclose(shown, expected[0], rtol=0, atol=1e-7)
+    sums = (("fbm", 0.5 + 0.5 * fbm_grid(along, along, [0.5], seed=3)[0]),)
+    sums += (("turbulence", turbulence_grid(along, along, [0.5], seed=3)[0]),)
+    for kind, expected in sums:
+        shown = values(noise_picture(kind, size=32, seed=3))
+        np.testing.assert_allclose(shown, expected[0], rtol=0, atol=1e-7)
     sheet = cloud_sheet(64, seed=3)
     shown = values(noise_picture("sheet", size=64, seed=3))
     np.testing.assert_allclose(shown, sheet / 255.0, rtol=0, atol=1e-7)

@@ -25,7 +25,7 @@ from refcloud.noise import (
 )
 
 TILED = 1e-12  # a shift of up to 1 is added to up to 2^7 cells, twice
-SINGLE = 1e-6  # worst seen 3e-7 in float32; times 3
+SINGLE = 1e-6  # worst seen 2e-7 in float32; times 5
 
 axes = st.lists(coordinates, max_size=4)
 
@@ -46,7 +46,7 @@ def test_grid_has_the_bits_of_the_points(data, n, how) -> None:
     np.testing.assert_array_equal(grid, pointwise(smooth, lines, **how))
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(st.data(), dimensions, smooth_ways)
 def test_n30_range(data, n, how) -> None:
     noise = smooth(np.array(drawn_places(data.draw, n, most=8)), **how)
@@ -143,6 +143,7 @@ def test_e33_an_empty_range_is_refused_or_a_step_by_name() -> None:
         np.testing.assert_array_equal(near, [5.0, 7.0])
 
 
+@settings(max_examples=30)
 @given(st.lists(st.tuples(*[coordinates | st.sampled_from([math.nan, math.inf])] * 3)))
 def test_not_finite_points_give_nan_and_spoil_no_other(places) -> None:
     array = np.array(places, dtype=np.float64).reshape(-1, 3)

@@ -23,7 +23,7 @@ from refcloud.noise import (
 )
 
 SAME = 1e-12  # the contract for grids and points; here their bits agree
-SINGLE = 5e-7  # worst seen 2.2e-7 in float32: the last bits of three squares; times 2
+SINGLE = 5e-7  # worst seen 2.5e-7 in float32: the last bits of three squares; times 2
 
 axes = st.lists(coordinates, max_size=5)
 
@@ -96,7 +96,7 @@ def test_single_precision_is_close(data, n, how) -> None:
     np.testing.assert_allclose(single, worley(places, **how), rtol=0, atol=SINGLE)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(st.data(), dimensions, seeds, periods)
 def test_range_and_order_at_any_finite_place(data, n, seed, period) -> None:
     places = np.array(drawn_places(data.draw, n, most=8))
@@ -156,7 +156,7 @@ def test_chunks_and_tables_do_not_show(data, n, how, chunk, few) -> None:
         patch.setattr(module("worley_search"), "HASHED_CHUNK", few)
         np.testing.assert_array_equal(worley(places, **how), whole)
         patch.setattr(module("worley_lists"), "PAYS", 1e9)
-        patch.setattr(module("worley_lists"), "PARTS", (few,))
+        patch.setattr(module("worley_lists"), "PARTS", few)
         patch.setattr(module("worley_lists"), "BLOCK", chunk)
         np.testing.assert_array_equal(worley(places, **how), whole)
         patch.setattr(module("worley_search"), "MOST_TABLE", 0)
@@ -184,6 +184,7 @@ def test_not_finite_points_give_nan_and_spoil_no_other(places) -> None:
     np.testing.assert_array_equal(noise[finite], worley(array[finite], period=7))
 
 
+@settings(max_examples=25)
 @given(st.lists(points, min_size=1, max_size=3), st.permutations([0, 1, 2]))
 def test_seeds_are_hashed_and_do_not_move_the_pattern(places, order) -> None:
     # One place may agree by chance; a hundred around it do not.
@@ -203,8 +204,8 @@ def test_resolution_and_cells_have_nothing_to_do_with_each_other() -> None:
 
 
 def test_memory_stays_bounded() -> None:
-    line = np.arange(64) * 1000.5  # every sample alone in its cell
-    far = np.stack([np.linspace(-1e9, 1e9, 100_000)] * 3, axis=-1)  # 2.4 MB
+    line = np.arange(48) * 1000.5  # every sample alone in its cell
+    far = np.stack([np.linspace(-1e9, 1e9, 40_000)] * 3, axis=-1)  # 1 MB
     for work in (lambda: worley_grid(line, line, line), lambda: worley(far)):
         tracemalloc.start()
         work()

@@ -12,9 +12,8 @@ from twins import twin
 from twins.noise import coordinates, seeds
 from twins.worley import dimensions, drawn_places
 
-ROUNDED = "worst seen 1.2e-15 in 2,000 examples, times 8: corners are summed otherwise"
-SOURCE = "as the others, and values up to 256"
-GRADIENT = "as gradient noise: products of matrices; worst seen 2e-15, times 10"
+ROUNDED = "worst seen 4.2e-16 in 1,500 examples, times 8: corners are summed otherwise"
+FILLED = "worst seen 4.5e-16 in 1,500 examples, times 8"
 
 numbers = st.floats(-100.0, 100.0)
 cells = st.none() | st.integers(1, 9)
@@ -35,20 +34,20 @@ texture_ways = st.fixed_dictionaries(
 line = st.lists(coordinates, min_size=1, max_size=2)
 
 
-@twin(array.smooth, plain.smooth, tolerance=1e-14, why=ROUNDED)
+@twin(array.smooth, plain.smooth, tolerance=3.4e-15, why=ROUNDED)
 def smooth(draw):
     places, how = drawn_places(draw, draw(dimensions)), draw(smooth_ways)
     expected = [plain.smooth(place, **how) for place in places]
     return array.smooth(np.array(places), **how), expected
 
 
-@twin(array.smooth_grid, plain.smooth_grid, tolerance=1e-14, why=ROUNDED)
+@twin(array.smooth_grid, plain.smooth_grid, tolerance=3.4e-15, why=ROUNDED)
 def smooth_grid(draw):
     axes, how = [draw(line) for _ in range(draw(dimensions))], draw(smooth_ways)
     return array.smooth_grid(*axes, **how), plain.smooth_grid(*axes, **how)
 
 
-@twin(array.remap, plain.remap, tolerance=1e-15, why="the same steps")
+@twin(array.remap, plain.remap, tolerance=0.0, why="the same steps")
 def remap(draw):
     value, l0, ln, hn = (draw(numbers) for _ in range(4))
     # A range of the width of a last bit has no line worth comparing.
@@ -58,7 +57,7 @@ def remap(draw):
     return actual, plain.remap(value, l0, h0, ln, hn, **how)
 
 
-@twin(array.worley_smooth, plain.worley_smooth, tolerance=2e-14, why=GRADIENT)
+@twin(array.worley_smooth, plain.worley_smooth, tolerance=3.6e-15, why=FILLED)
 def worley_smooth(draw):
     places = drawn_places(draw, draw(dimensions))
     how = draw(texture_ways) | {"period": draw(cells)}
@@ -66,7 +65,7 @@ def worley_smooth(draw):
     return array.worley_smooth(np.array(places), **how), expected
 
 
-@twin(array.worley_smooth_grid, plain.worley_smooth_grid, tolerance=2e-14, why=GRADIENT)
+@twin(array.worley_smooth_grid, plain.worley_smooth_grid, tolerance=3.6e-15, why=FILLED)
 def worley_smooth_grid(draw):
     axes = [draw(line) for _ in range(draw(dimensions))]
     how = draw(texture_ways) | {"period": draw(cells)}
@@ -77,12 +76,12 @@ def worley_smooth_grid(draw):
 @twin(
     cloudmap.worley_smooth_texture,
     plain.worley_smooth_texture,
-    tolerance=2e-13,
-    why=GRADIENT + ", divided by 1 - threshold",
+    tolerance=3.6e-14,
+    why="as the noise, divided by 1 - threshold, a tenth or more",
 )
 def worley_smooth_texture(draw):
     how = draw(texture_ways)
     how |= {"cells": draw(st.integers(1, 4)), "threshold": draw(st.floats(0.0, 0.9))}
-    size = draw(st.integers(1, 2))
+    size = draw(st.sampled_from([1, 1, 1, 2]))
     actual = cloudmap.worley_smooth_texture(size, **how).density
     return actual, plain.worley_smooth_texture(size, **how)
