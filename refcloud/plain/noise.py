@@ -181,10 +181,7 @@ def value(
 
 
 def value_grid(
-    x: Sequence[float],
-    y: Sequence[float],
-    z: Sequence[float],
-    **how,
+    x: Sequence[float], y: Sequence[float], z: Sequence[float], **how
 ) -> list[list[list[float]]]:
     """Give `value` at each place of a grid, as [z][y][x]."""
     return [[[value((a, b, c), **how) for a in x] for b in y] for c in z]
