@@ -23,7 +23,7 @@ FLOORS = (
     ("metaballs", "transport"),
     ("raster", "march"),
     ("lighting", "sky"),
-    ("compose", "scene"),
+    ("compose", "scene", "noise_pictures"),
     ("render",),
     ("scenes",),
     ("bench", "studio"),

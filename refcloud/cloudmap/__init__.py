@@ -6,6 +6,7 @@ from refcloud.cloudmap.file import load_voxels, save_voxels
 from refcloud.cloudmap.generate import generate
 from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
 from refcloud.cloudmap.sample import trilinear
+from refcloud.cloudmap.texture import worley_smooth_texture
 from refcloud.cloudmap.voxels import VoxelGrid, cell_centres, cell_size
 
 __all__ = [
@@ -23,4 +24,5 @@ __all__ = [
     "quadric",
     "save_voxels",
     "trilinear",
+    "worley_smooth_texture",
 ]

@@ -16,7 +16,9 @@ from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
 from refcloud.noise.hashing import _hash, _words, uniform
 from refcloud.noise.lattice import _reduced
-from refcloud.noise.value import Axes, Points, _add_grid, _in_chunks, _value
+from refcloud.noise.scattered import _scattered
+from refcloud.noise.value import How, Points, _value
+from refcloud.noise.value_grid import Axes, _add_grid
 from refcloud.noise.weights import PEAKS, Interpolant
 
 Normalize = Literal["clip", "bound", "none"]
@@ -130,15 +132,16 @@ def octave_sum(
     """
     frames = [octave_frame(i, seed=seed) for i in range(octaves)]
 
-    def noise(x: Array, y: Array, z: Array) -> Array:
-        total = np.zeros_like(x)
+    def noise(columns: Array) -> Array:
+        total = np.zeros_like(columns[0])
         for i, (own, shift) in enumerate(frames):
-            axes = _placed((x, y, z), i, shift)
-            total += persistence**i * _value(axes, own, interpolant, True)
+            places = np.array(_placed(tuple(columns), i, shift))
+            how = How(own, interpolant, True)
+            total += persistence**i * _value(_reduced(places), how)
         return total
 
     bound = octave_bound(octaves, persistence) * PEAKS[interpolant] ** 3
-    return _finished(_in_chunks(points, noise), bound, normalize, absolute)
+    return _finished(_scattered(points, noise, "float64"), bound, normalize, absolute)
 
 
 @checked
@@ -201,7 +204,7 @@ def octave_sum_grid(
     for i in kept:
         own, shift = octave_frame(i, seed=seed)
         axes = _placed((x, y, z), i, shift)
-        _add_grid(total, persistence**i, axes, own, interpolant, True)
+        _add_grid(total, persistence**i, axes, How(own, interpolant, True))
     values = _finished(total, bound, normalize, absolute)
     if len(kept) == octaves:
         return values, ()

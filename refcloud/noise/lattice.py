@@ -113,6 +113,9 @@ def _axis(coordinates: Array, interpolant: Interpolant, smooth: bool) -> AxisTap
 
 def _reduced(coordinates: Array) -> Array:
     """Take finite coordinates modulo the period, exactly, keeping their sign."""
+    # fmod costs as much as ten other passes, and leaves what is small as it is.
+    if not coordinates.size or np.abs(coordinates).max() < PERIOD:
+        return coordinates
     return np.fmod(coordinates, PERIOD)
 
 

@@ -64,14 +64,17 @@ def uniform(*words: int, seed: int) -> float:
     return (hashed(words, seed) >> 11) / 2**53
 
 
-def smoothed(x: int, y: int, z: int, *, seed: int | None = 0) -> float:
+def smoothed(
+    x: int, y: int, z: int, *, seed: int | None = 0, period: int = PERIOD
+) -> float:
     """Give the weighted mean of a lattice point's 27 neighbours (eq 3)."""
     sums = [0.0, 0.0, 0.0, 0.0]  # centre, sides, dgSides, corners
     for dx in (-1, 0, 1):
         for dy in (-1, 0, 1):
             for dz in (-1, 0, 1):
                 off_axes = abs(dx) + abs(dy) + abs(dz)
-                sums[off_axes] += lattice_random(x + dx, y + dy, z + dz, seed=seed)
+                near = ((x + dx) % period, (y + dy) % period, (z + dz) % period)
+                sums[off_axes] += lattice_random(*near, seed=seed)
     centre, sides, edges, corners = sums
     return 9 / 18 * centre + 4 / 108 * sides + 3 / 216 * edges + 2 / 144 * corners
 
@@ -151,35 +154,36 @@ def value(
     seed: int | None = 0,
     interpolant: str = "cosine",
     smooth: bool = True,
+    period: int | None = None,
 ) -> float:
     """Give value noise at one point (eq 7): along x, then y, then z."""
     if not all(math.isfinite(c) for c in point):
         return math.nan
-    x, y, z = (math.floor(c) for c in point)
-    tx, ty, tz = (c - math.floor(c) for c in point)
-    f = smoothed if smooth else lattice_random
+    wrap = period or PERIOD
+    place = [math.fmod(c, wrap) for c in point]
+    x, y, z = (math.floor(c) for c in place)
+    tx, ty, tz = (c - math.floor(c) for c in place)
+
+    def f(*cell: int) -> float:
+        if smooth:
+            return smoothed(*cell, seed=seed, period=wrap)
+        return lattice_random(*(c % wrap for c in cell), seed=seed)
+
     near = reach(interpolant)
     layers = []
     for k in near:
         rows = []
         for j in near:
-            row = [f(x + i, y + j, z + k, seed=seed) for i in near]
+            row = [f(x + i, y + j, z + k) for i in near]
             rows.append(interpolated(interpolant, row, tx))
         layers.append(interpolated(interpolant, rows, ty))
     return interpolated(interpolant, layers, tz)
 
 
 def value_grid(
-    x: Sequence[float],
-    y: Sequence[float],
-    z: Sequence[float],
-    *,
-    seed: int | None = 0,
-    interpolant: str = "cosine",
-    smooth: bool = True,
+    x: Sequence[float], y: Sequence[float], z: Sequence[float], **how
 ) -> list[list[list[float]]]:
     """Give `value` at each place of a grid, as [z][y][x]."""
-    how = {"seed": seed, "interpolant": interpolant, "smooth": smooth}
     return [[[value((a, b, c), **how) for a in x] for b in y] for c in z]
 
 

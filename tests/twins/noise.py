@@ -141,6 +141,7 @@ def drawn_value(draw: Draw) -> dict:
         "seed": draw(seeds_or_none),
         "interpolant": draw(st.sampled_from(INTERPOLANTS)),
         "smooth": draw(st.booleans()),
+        "period": draw(st.none() | st.integers(1, 9) | st.just(2**31)),
     }
 
 

@@ -1,0 +1,72 @@
+"""Document D's cloud: a texture of Worley and smooth noise that tiles, in a box."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from refcloud.checking import checked
+from refcloud.cloudmap.voxels import VoxelGrid
+from refcloud.conventions import Positive, Range, Seed
+from refcloud.noise import worley_smooth_grid
+from refcloud.noise.worley_smooth import Detail, Octaves, Period
+
+# Where cloud begins: near the median of the noise (0.65 to two places, over seeds and
+# numbers of cells), so that about half of the box is filled.
+THRESHOLD = 0.65
+# 2^28 voxels are 645 along each side: the limit of `VoxelGrid`'s makers.
+Side = Annotated[int, Range(1, 645, "voxels")]
+
+
+@checked
+def worley_smooth_texture(
+    size: Side = 64,
+    *,
+    cells: Period = 4,
+    seed: Seed = 0,
+    octaves: Octaves = 3,
+    threshold: Annotated[float, Range(0.0, 1.0, open_upper=True)] = THRESHOLD,
+    detail: Detail = "smooth",
+    side: Annotated[float, Positive] = 1.0,
+) -> VoxelGrid:
+    """Make a cube of cloud that continues itself on all sides.
+
+    Formula: max(remap(worley_smooth(p), threshold, 1, 0, 1), 0)
+
+    Parameters
+    ----------
+    size
+        Voxels along each side.
+    cells
+        Cells of the Worley noise along each side, whatever the number of voxels; after
+        them the texture repeats.
+    seed
+        Which pattern.
+    octaves
+        Octaves of the finer noise.
+    threshold
+        Level of the noise at which cloud begins; it is densest, 1, where the noise is.
+    detail
+        The finer noise: "smooth", or "gradient", which document D rejected (N32).
+    side
+        Edge of the box, scene units; the box is centred on the origin.
+
+    Returns
+    -------
+    The cloud map, densities in [0, 1].
+
+    Source: document D, Generating Cloud Textures (N28, N29, N31, V09).
+
+    Examples
+    --------
+    >>> worley_smooth_texture(8, cells=2, seed=7).density.shape
+    (8, 8, 8)
+    """
+    line = (np.arange(size) + 0.5) * cells / size
+    noise = worley_smooth_grid(
+        line, line, line, seed=seed, period=cells, octaves=octaves, detail=detail
+    )
+    density = np.maximum((noise - threshold) / (1.0 - threshold), 0.0)
+    corner = np.full(3, 0.5 * side)
+    return VoxelGrid(density, -corner, corner)

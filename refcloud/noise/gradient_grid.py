@@ -1,0 +1,203 @@
+"""Gradient noise on a grid: hash each lattice point once, contract one axis at a time.
+
+With the weights W of an axis and D = W times the offset from the line, the noise is
+``Wz (Wy X + Dy Y) + Dz (Wy Z)``, where X = Dx gx, Y = Wx gy and Z = Wx gz are the
+lattice's gradients blended along x: a few additions per sample in place of eight hashes
+and eight dot products.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Annotated
+
+import numpy as np
+
+from refcloud.checking import checked
+from refcloud.conventions import Array, Seed, Shape
+from refcloud.noise.bands import (
+    MOST_PRODUCTS,
+    Axis,
+    _ascending,
+    _axis,
+    _lines,
+    _product,
+)
+from refcloud.noise.directions import Fade, Gradients, _named
+from refcloud.noise.gradient import FADES, How, Period
+from refcloud.noise.mixing import Hash, _choice, _joined, lattice_bits
+from refcloud.noise.scattered import Dtype, Numbers
+
+MOST_BLENDED = 1 << 22  # values blended along x that are held at a time: 32 MB
+
+
+@checked
+def gradient_grid(
+    x: Annotated[Array, Shape("W")],
+    y: Annotated[Array, Shape("H")],
+    z: Annotated[Array, Shape("D")] | None = None,
+    *,
+    seed: Seed = 0,
+    fade: Fade = "quintic",
+    gradients: Gradients | None = None,
+    period: Period | None = None,
+    hash: Hash = "mixed",
+    dtype: Dtype = "float64",
+) -> Numbers:
+    """Give gradient noise on a grid: `gradient` at every place, many times faster.
+
+    Formula: n = Wz (Wy (Dx gx) + Dy (Wx gy)) + Dz (Wy (Wx gz)), products of matrices
+
+    Parameters
+    ----------
+    x, y, z
+        Coordinates along each axis, in lattice cells. Any order, any spacing, finite.
+        Without z the noise is that of the plane.
+    seed
+        Which pattern. Patterns of two seeds have nothing in common.
+    fade
+        How corners are blended. "quintic" has continuous curvature, "hermite" a
+        continuous slope (N11, N12).
+    gradients
+        Which set of gradients. None is the usual one of the dimension (N21).
+    period
+        After how many cells the pattern repeats along each axis. None is 2^32.
+    hash
+        How a lattice point chooses its gradient.
+    dtype
+        Precision of the products and the result; weights are made in float64.
+
+    Returns
+    -------
+    Shape (D, H, W) as [z, y, x], or (H, W) without z, in [-1, 1].
+
+    Raises
+    ------
+    ValueError
+        The gradient set does not fit the number of axes.
+
+    Source: document S (N20, N21); E14.
+
+    Examples
+    --------
+    >>> gradient_grid([0.5, 0.75], [1e9, -3.0, 0.0], [0.0], seed=7).shape
+    (1, 3, 2)
+    """
+    axes = (x, y) if z is None else (x, y, z)
+    how = How(seed, fade, _named(gradients, len(axes)), period, hash, dtype)
+    out = np.empty([axis.size for axis in axes[::-1]], dtype)
+    _fill(out, axes, how, np.copyto)
+    return out
+
+
+def _literal(x: Array, y: Array, z: Array, seed: int, rows: Array) -> Array:
+    """Give gradient noise as five dense products along each axis, whole at once."""
+    W, D, lines = [], [], []
+    for axis in (x, y, z):
+        lines.append(_lines(axis))
+        offset = axis[:, np.newaxis] - lines[-1]  # (samples, lines)
+        W.append(1.0 - FADES["quintic"](np.minimum(np.abs(offset), 1.0)))
+        D.append(W[-1] * offset)
+    bits = lattice_bits(lines[0], lines[1][:, None], lines[2][:, None, None], seed=seed)
+    gx, gy, gz = rows[:, _choice(bits, rows.shape[1])]  # [z, y, x] each
+    A = W[1] @ (gx @ D[0].T) + D[1] @ (gy @ W[0].T)
+    B = W[1] @ (gz @ W[0].T)
+    return np.tensordot(W[2], A, 1) + np.tensordot(D[2], B, 1)
+
+
+def _fill(
+    out: Numbers,
+    axes: tuple[Array, ...],
+    how: How,
+    put: Callable[[Numbers, Numbers], None],
+    scale: float = 1.0,
+) -> None:
+    """Give `put` each part of out and its scaled noise, axes in any order."""
+    if not out.size:
+        return
+    places, orders = zip(*(_ascending(c, how.period) for c in axes), strict=True)
+    if all(order is None for order in orders):
+        _fill_part(out, places, how, put, scale)
+        return
+    part = np.empty_like(out)
+    _fill_part(part, places, how, np.copyto, scale)
+    index = np.ix_(
+        *(
+            np.arange(n) if order is None else np.argsort(order)
+            for n, order in zip(out.shape, orders[::-1], strict=True)
+        )
+    )
+    put(out, part[index])
+
+
+def _fill_part(
+    out: Numbers,
+    places: tuple[Array, ...],
+    how: How,
+    put: Callable[[Numbers, Numbers], None],
+    scale: float,
+) -> None:
+    """Fill a part of a grid, halved until what is blended along x is small enough."""
+    lines = [_lines(p).size for p in places]
+    blended = len(lines) * out.shape[-1] * int(np.prod(lines[1:]))
+    if max(blended, int(np.prod(lines))) > MOST_BLENDED and out.size > 1:
+        longest = int(np.argmax(out.shape))
+        half = out.shape[longest] // 2
+        for part in (slice(None, half), slice(half, None)):
+            fewer = list(places)
+            fewer[-1 - longest] = places[-1 - longest][part]
+            where = (slice(None),) * longest + (part,)
+            _fill_part(out[where], tuple(fewer), how, put, scale)
+        return
+    axes = [_axis(p, k, how) for k, p in enumerate(places)]
+    level = _blended_along_x(axes, how, scale)
+    for rows in range(len(axes[1].tiles)):
+        for planes, values in _values(level, axes, rows):
+            where = axes[1].tiles[rows].samples
+            put(out[planes, where] if len(axes) == 3 else out[where], values)
+
+
+def _blended_along_x(
+    axes: list[Axis], how: How, scale: float
+) -> tuple[Numbers, Numbers]:
+    """Give X and Y of every lattice row, (Lz, 2 Ly, W), and Z of it, (Lz, Ly, W)."""
+    words = [axis.bits.reshape(-1, *[1] * number) for number, axis in enumerate(axes)]
+    pick = _choice(_joined(words, how.seed, how.hash), how.rows().shape[1])
+    pick = pick.reshape(-1, pick.shape[-1])  # one row of the lattice along x each
+    rows = (how.rows() * scale).astype(how.dtype)
+    xy = np.empty((len(pick), 2, axes[0].size), how.dtype)
+    z = np.empty((len(pick) if len(axes) == 3 else 0, axes[0].size), how.dtype)
+    for k, out in enumerate((xy[:, 0], xy[:, 1], z)[: len(axes)]):
+        slopes = rows[k].take(pick, mode="wrap")
+        for tile in axes[0].tiles:
+            # Only along x itself does the offset count.
+            weights = (tile.weights if k else tile.slopes).T
+            step = max(1, MOST_PRODUCTS // weights.size)
+            for first in range(0, len(pick), step):
+                part = slice(first, first + step)
+                values = slopes[part, tile.lines] @ weights
+                out[part, tile.samples] = values
+    high = axes[1].bits.size
+    return xy.reshape(-1, 2 * high, axes[0].size), z.reshape(-1, high, axes[0].size)
+
+
+def _values(
+    level: tuple[Numbers, Numbers], axes: list[Axis], rows: int
+) -> Iterator[tuple[slice, Numbers]]:
+    """Blend along y for one tile of rows, then along z: planes, and their noise."""
+    xy, z = level
+    tile = axes[1].tiles[rows]
+    height, width = len(tile.weights), xy.shape[-1]
+    pairs = slice(2 * tile.lines.start, 2 * tile.lines.stop)
+    blended = np.empty((len(xy), 2, height, width), xy.dtype)
+    _product(tile.both, xy[:, pairs], blended[:, 0])
+    if len(axes) == 2:
+        yield slice(None), blended[0, 0]
+        return
+    _product(tile.weights, z[:, tile.lines], blended[:, 1])
+    blended = blended.reshape(-1, height * width)
+    for planes in axes[2].tiles:
+        values = np.empty((len(planes.weights), height * width), xy.dtype)
+        pairs = slice(2 * planes.lines.start, 2 * planes.lines.stop)
+        _product(planes.both, blended[pairs], values)
+        yield planes.samples, values.reshape(-1, height, width)

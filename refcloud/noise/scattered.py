@@ -1,0 +1,75 @@
+"""Scattered points some at a time: what is not finite gives NaN and spoils no other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refcloud.conventions import Array, MayBeNotFinite, Shape
+from refcloud.refusal import complaint
+
+Dtype = Literal["float64", "float32"]
+Places = Annotated[Array, Shape("...", "N"), MayBeNotFinite]
+Numbers = NDArray[Any]  # float64 or float32, as the caller asked
+
+CHUNK = 1 << 14  # points at a time: their corners stay in the cache
+PERIOD = 2.0**32  # lattice coordinates wrap here, for every hash
+
+
+def _dimensions(points: Array, allowed: tuple[int, ...]) -> int:
+    """Give how many coordinates a place has, refused where the noise has no such."""
+    count = points.shape[-1]
+    if count not in allowed:
+        shapes = " or ".join(f"(..., {n})" for n in allowed)
+        expected = f"an array of shape {shapes}"
+        raise ValueError(complaint("points", expected, f"shape {points.shape}"))
+    return count
+
+
+def _scattered(
+    points: Array,
+    noise: Callable[[Array], Any],
+    dtype: Dtype,
+    period: int | None = None,
+    results: int = 1,
+) -> Numbers:
+    """Apply noise to the finite points; shape (..., results), or (...,) for one.
+
+    The noise gets the coordinates in rows, shape (N, n), taken modulo the period, and
+    gives one result or a row of results.
+    """
+    flat = points.reshape(-1, points.shape[-1])
+    out = np.empty((results, len(flat)), dtype)
+    most = PERIOD if period is None else float(period)
+    for first in range(0, len(flat), CHUNK):
+        part = slice(first, first + CHUNK)
+        chunk = flat[part]
+        if np.abs(chunk).max() < most:  # not so where any is NaN
+            out[:, part] = noise(chunk.T.copy())
+            continue
+        rows = np.isfinite(chunk).all(axis=1)
+        out[:, part] = np.nan
+        if rows.any():
+            out[:, part][:, rows] = noise(np.fmod(chunk[rows].T, most))
+    if results == 1:
+        return out[0].reshape(points.shape[:-1])[()]
+    return np.ascontiguousarray(out.T).reshape(*points.shape[:-1], results)
+
+
+def _split(
+    reduced: Array, dtype: Dtype = "float64"
+) -> tuple[NDArray[np.int64], Numbers]:
+    """Split coordinates into the cell and the place in it: floor, as a cast mirrors.
+
+    The place is found in float64, and rounded to the dtype after that (E14).
+    """
+    floor = np.floor(reduced)
+    return floor.astype(np.int64), (reduced - floor).astype(dtype, copy=False)
+
+
+def _wrapped(cells: NDArray[np.int64], period: int | None) -> NDArray[np.int64]:
+    """Repeat lattice coordinates after the period, where there is one."""
+    return cells if period is None else np.mod(cells, period)
