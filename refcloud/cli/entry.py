@@ -22,6 +22,8 @@ COMMANDS = {
     "render": "refcloud.cli.render",
     "compare": "refcloud.cli.compare",
     "list": "refcloud.cli.scenes",
+    "noise": "refcloud.cli.noise",
+    "bench": "refcloud.cli.bench",
 }
 BAD_INPUT = 2
 # As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE).

@@ -85,7 +85,7 @@ def fbm_grid(
     --------
     >>> noise, skipped = fbm_grid([0.0, 0.5], [0.0], finest=0.5, normalize="none")
     >>> print(skipped[0])
-    noise: 2 of 4 octaves with under a sample per cell skipped, error at most 0.38
+    noise: 2 of 4 octaves too fine to show skipped, error at most 0.38 (noise)
     """
     how = (kind, time, seed, octaves, persistence, normalize, period, dtype, finest)
     return _sum_grid((x, y, z), *how, absolute=False)
@@ -198,9 +198,10 @@ def _sum_grid(
     lost = math.fsum(persistence**i for i in range(len(kept), octaves))
     row = Skipped(
         "noise",
-        "octaves with under a sample per cell",
+        "octaves too fine to show",
         octaves - len(kept),
         octaves,
         lost / bound if normalize == "bound" else lost,
+        "noise",
     )
     return result, (row,)

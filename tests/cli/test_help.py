@@ -14,9 +14,11 @@ import numpy as np
 import pytest
 
 import refcloud as rc
+from refcloud.cli.bench import measure
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
 from refcloud.conventions import Range
+from refcloud.noise_pictures import noise_picture
 
 # What each command takes its options from, and the parameters that words cannot give.
 SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
@@ -34,6 +36,8 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
         (rc.difference_picture, {"a", "b"}),
     ],
     "list": [],
+    "noise": [(noise_picture, {"kind"})],
+    "bench": [(measure, set())],
 }
 RENAMED = {"direction": "sun"}
 OWN_DEFAULTS = {("render", "tolerance"): "1/255"}
