@@ -84,6 +84,7 @@ def fade_of(name: str, t: np.ndarray) -> np.ndarray:
     return module("gradient").FADES[name](t)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fade", ["quintic", "hermite"])
 @pytest.mark.parametrize("name", sorted(PEAKS))
 def test_the_bound_is_a_theorem_and_tight(name, fade) -> None:

@@ -76,6 +76,7 @@ def test_range_at_any_finite_place(n: int, how, data) -> None:
     assert np.abs(simplex_grid(*at[:1].T, **how)).max() <= 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", RADII)
 @pytest.mark.parametrize("n", [2, 3, 4])
 def test_the_bound_is_a_theorem_and_close(n: int, radius) -> None:

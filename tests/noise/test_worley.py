@@ -64,6 +64,7 @@ def test_exact_search_equals_brute_force(data, n, period, seed, feature) -> None
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("period", [4, 9])
 def test_exact_search_equals_a_tree(period: int) -> None:
     spatial = pytest.importorskip("scipy.spatial", reason="scipy is not installed")
