@@ -46,8 +46,8 @@ def detail_grid(
     cell
         Coarsest cell of the noise, scene units, above 0.
     pixel
-        What one pixel covers of the nearest place, scene units: octaves with cells
-        below that cannot be displayed and are left out; 0 keeps all.
+        What one pixel covers of the nearest place, scene units: the table is no finer
+        than that, and octaves with cells below it are left out; 0 keeps all.
     seed
         Chooses the noise.
 
@@ -59,7 +59,7 @@ def detail_grid(
     Source: an extension of paper M, eq 12.
     """
     spacing = cell / 2 ** (OCTAVES - 1) / SAMPLES
-    while SAMPLES * spacing < pixel:
+    while spacing < pixel:
         spacing *= 2.0
     while np.prod(np.ceil((upper - lower) / spacing) + 3.0) > MOST_CELLS:
         spacing *= 2.0

@@ -47,7 +47,7 @@ def detail_grid(
 ) -> Detail:
     """Tabulate the noise of footprints, on whole multiples of the spacing."""
     spacing = cell / 2 ** (octaves - 1) / samples
-    while samples * spacing < pixel:
+    while spacing < pixel:
         spacing *= 2.0
     edges = [b - a for a, b in zip(lower, upper, strict=True)]
     while math.prod(math.ceil(e / spacing) + 3.0 for e in edges) > most_cells:
