@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -47,7 +47,7 @@ def _scattered(
     for first in range(0, len(flat), CHUNK):
         part = slice(first, first + CHUNK)
         chunk = flat[part]
-        if np.abs(chunk).max() < most:  # not so where any is NaN
+        if max(-chunk.min(), chunk.max()) < most:  # not so where any is NaN
             out[:, part] = noise(chunk.T.copy())
             continue
         rows = np.isfinite(chunk).all(axis=1)
@@ -57,6 +57,23 @@ def _scattered(
     if results == 1:
         return out[0].reshape(points.shape[:-1])[()]
     return np.ascontiguousarray(out.T).reshape(*points.shape[:-1], results)
+
+
+def _bounds(points: Array, period: int | None) -> Iterator[NDArray[np.int64]]:
+    """Give the lowest and highest cells along each axis, (N, 2), of points in a period.
+
+    First those of a cube around all, which is quick to find, then those of a tight box;
+    none where any point is not finite or lies beyond the period.
+    """
+    if not points.size:
+        return
+    low, high = points.min(), points.max()
+    if not max(-low, high) < (PERIOD if period is None else float(period)):
+        return
+    columns = points.reshape(-1, points.shape[-1]).T
+    yield np.floor([[low, high]] * len(columns)).astype(np.int64)
+    ends = [(column.min(), column.max()) for column in columns]
+    yield np.floor(ends).astype(np.int64)
 
 
 def _split(
