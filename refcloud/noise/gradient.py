@@ -98,7 +98,9 @@ def gradient(
     name = _named(gradients, _dimensions(points, (2, 3)))
     how = How(seed, fade, name, period, hash, dtype)
     box = _pair_box(points, how.lattice())
-    return _scattered(points, lambda axes: _gradient(axes, how, box), dtype, period)
+    return _scattered(
+        points, lambda axes: _gradient(axes, how, box), dtype, period, inside=bool(box)
+    )
 
 
 @checked
@@ -188,7 +190,8 @@ def _literal(points: Array, seed: int, fade: Fade, name: Gradients) -> Array:
 
 def _gradient(columns: Array, how: How, box: PairBox | None = None) -> Numbers:
     """Give gradient noise at finite points, coordinates in rows, shape (N, n)."""
-    cells, places = _split(columns, how.dtype)
+    cells = np.floor(columns)
+    places = (columns - cells).astype(how.dtype, copy=False)
     pairs = _hashed_pairs(cells, how.lattice()) if box is None else box.at(cells)
     return _paired(places, FADES[how.fade](places), pairs, how.rows())
 

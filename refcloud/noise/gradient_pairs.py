@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
-from refcloud.noise.mixing import Bits, Hash, _axis_bits, _choice, _joined
+from refcloud.noise.mixing import Bits, Hash, _axis_bits, _chosen, _joined
 from refcloud.noise.scattered import Numbers, _bounds
 
 MOST_LATTICE = 1 << 21  # bytes of a box: beyond, the cache misses cost what it saves
@@ -48,9 +48,10 @@ class Lattice:
         most = 1 << 32 if self.period is None else self.period
         return _axis_bits(np.mod(line, most), axis, self.seed, self.hash)
 
-    def picks(self, words: list[Bits]) -> Pairs:
+    def picks(self, words: list[Bits]) -> NDArray[np.uint8]:
         """Choose gradients where axes' words, which broadcast, meet."""
-        return _choice(_joined(words, self.seed, self.hash), self.gradients)
+        bits = _joined(words, self.seed, self.hash)
+        return _chosen(bits, self.gradients).astype(np.uint8)
 
 
 @dataclass(frozen=True)
@@ -71,21 +72,17 @@ class PairBox:
     counts: list[int]
     pairs: NDArray[np.uint8]
 
-    def at(self, cells: NDArray[np.int64]) -> Pairs:
-        """Look up the pairs of cells (N, n), shape (..., 2, n) as [y, z, n]."""
-        last = len(cells) - 1
-        start = cells[last] - self.low[last]
-        for axis in range(last - 1, -1, -1):
-            start *= self.counts[axis]
-            start += cells[axis]
-            start -= self.low[axis]
-        steps = np.cumprod([1, *self.counts])[1:-1].tolist()
-        found = np.empty((*[2] * last, start.size), np.intp)
+    def at(self, cells: Array) -> Pairs:
+        """Look up the pairs of whole numbers (N, n), shape (..., 2, n) as [y, z, n]."""
+        steps = np.cumprod([1, *self.counts[:-1]])
+        # Whole numbers below 2^53 are exact as float64, where they multiply faster.
+        inside = cells - np.array(self.low, np.float64)[:, np.newaxis]
+        start = (steps.astype(np.float64) @ inside).astype(np.intp)
+        found = np.empty((*[2] * (len(steps) - 1), start.size), np.intp)
         some = np.empty(start.size, np.uint8)
-        for corner in itertools.product((0, 1), repeat=last):
+        for corner in itertools.product((0, 1), repeat=len(steps) - 1):
             # A view that starts further on spares adding to every index.
-            ahead = sum(c * step for c, step in zip(corner, steps, strict=True))
-            np.take(self.pairs[ahead:], start, out=some, mode="clip")
+            np.take(self.pairs[steps[1:] @ corner :], start, out=some, mode="clip")
             found[corner] = some
         return found
 
@@ -118,13 +115,14 @@ def _filled(lattice: Lattice, low: list[int], counts: list[int]) -> PairBox:
     for first in range(0, len(outer), planes):
         part = slice(first, first + planes)
         pick = lattice.picks([*inner, outer[part]])
-        pairs[part] = pick[..., :-1] * lattice.gradients + pick[..., 1:]
+        np.multiply(pick[..., :-1], lattice.gradients, out=pairs[part])
+        pairs[part] += pick[..., 1:]
     return PairBox(low, [counts[0] - 1, *counts[1:]], pairs.reshape(-1))
 
 
-def _hashed_pairs(cells: NDArray[np.int64], lattice: Lattice) -> Pairs:
+def _hashed_pairs(lows: Array, lattice: Lattice) -> Pairs:
     """Hash the corners of cells (N, n) and number their pairs: [y, z, n]."""
-    words = []
+    cells, words = lows.astype(np.int64), []
     for axis, cell in enumerate(cells):
         shape = [2 if k == axis else 1 for k in range(len(cells))]
         both = np.stack((cell, cell + 1))
@@ -133,7 +131,7 @@ def _hashed_pairs(cells: NDArray[np.int64], lattice: Lattice) -> Pairs:
     pair = pick[0]
     pair *= lattice.gradients
     pair += pick[1]
-    return pair
+    return pair.astype(np.intp)
 
 
 @functools.lru_cache(maxsize=32)
@@ -152,7 +150,7 @@ def _paired(places: Numbers, fades: Numbers, pairs: Pairs, rows: Array) -> Numbe
     n = places.shape[1]
     table = _pair_table(rows.tobytes(), rows.shape[1], places.dtype.str)
     # Both ends of x lie side by side; along the other axes they have the same offset.
-    offset, fade = _side_by_side(places), _side_by_side(fades)
+    offset, fade = _side_by_side(places), _side_by_side(fades[1:])
     offset[0, 1::2] -= 1.0
     total = np.empty((*pairs.shape[:-1], 2 * n), places.dtype)
     slope = np.empty_like(total)
@@ -171,7 +169,7 @@ def _paired(places: Numbers, fades: Numbers, pairs: Pairs, rows: Array) -> Numbe
     for axis in range(len(table) - 1, 0, -1):
         low, change = total[..., 0, :], total[..., 1, :]
         change -= low
-        change *= fade[axis]
+        change *= fade[axis - 1]
         change += low
         total = change
     low, change = total[0::2], total[1::2]

@@ -35,11 +35,13 @@ def _scattered(
     dtype: Dtype,
     period: int | None = None,
     results: int = 1,
+    inside: bool = False,
 ) -> Numbers:
     """Apply noise to the finite points; shape (..., results), or (...,) for one.
 
     The noise gets the coordinates in rows, shape (N, n), taken modulo the period, and
-    gives one result or a row of results.
+    gives one result or a row of results. `inside` says that all are known to be finite
+    and within the period.
     """
     flat = points.reshape(-1, points.shape[-1])
     out = np.empty((results, len(flat)), dtype)
@@ -47,7 +49,8 @@ def _scattered(
     for first in range(0, len(flat), CHUNK):
         part = slice(first, first + CHUNK)
         chunk = flat[part]
-        if max(-chunk.min(), chunk.max()) < most:  # not so where any is NaN
+        # A comparison with NaN does not hold.
+        if inside or max(-chunk.min(), chunk.max()) < most:
             out[:, part] = noise(chunk.T.copy())
             continue
         rows = np.isfinite(chunk).all(axis=1)
