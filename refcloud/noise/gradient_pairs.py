@@ -56,7 +56,7 @@ class Lattice:
 
 @dataclass(frozen=True)
 class PairBox:
-    """The numbers of all pairs in a box of cells.
+    """The numbers of the pairs around every cell of a box.
 
     Attributes
     ----------
@@ -64,13 +64,13 @@ class PairBox:
         The lowest cell's coordinates, one per axis.
     counts
         How many pairs lie along each axis.
-    pairs
-        Their numbers as [z, y, x], flat.
+    edges
+        The numbers of a cell's 4 pairs (2 in the plane) as [z, y, x], flat, [y, z].
     """
 
     low: list[int]
     counts: list[int]
-    pairs: NDArray[np.uint8]
+    edges: NDArray[np.uint8]
 
     def at(self, cells: Array) -> Pairs:
         """Look up the pairs of whole numbers (N, n), shape (..., 2, n) as [y, z, n]."""
@@ -78,13 +78,10 @@ class PairBox:
         # Whole numbers below 2^53 are exact as float64, where they multiply faster.
         inside = cells - np.array(self.low, np.float64)[:, np.newaxis]
         start = (steps.astype(np.float64) @ inside).astype(np.intp)
-        found = np.empty((*[2] * (len(steps) - 1), start.size), np.intp)
-        some = np.empty(start.size, np.uint8)
-        for corner in itertools.product((0, 1), repeat=len(steps) - 1):
-            # A view that starts further on spares adding to every index.
-            np.take(self.pairs[steps[1:] @ corner :], start, out=some, mode="clip")
-            found[corner] = some
-        return found
+        # A row holds the pairs of all edges: the cache is missed once, not four times.
+        edges = self.edges.take(start, axis=0, mode="clip").T
+        found = edges.astype(np.intp, order="C")
+        return found.reshape(*[2] * (len(steps) - 1), -1)
 
 
 def _pair_box(points: Array, lattice: Lattice) -> PairBox | None:
@@ -117,7 +114,15 @@ def _filled(lattice: Lattice, low: list[int], counts: list[int]) -> PairBox:
         pick = lattice.picks([*inner, outer[part]])
         np.multiply(pick[..., :-1], lattice.gradients, out=pairs[part])
         pairs[part] += pick[..., 1:]
-    return PairBox(low, [counts[0] - 1, *counts[1:]], pairs.reshape(-1))
+    # A cell's other edges lie further on; the last cells of a box are no point's.
+    counts = [counts[0] - 1, *counts[1:]]
+    steps, flat = np.cumprod(counts)[:-1], pairs.reshape(-1)
+    corners = list(itertools.product((0, 1), repeat=len(steps)))
+    edges = np.zeros((flat.size, len(corners)), np.uint8)
+    for k, corner in enumerate(corners):
+        ahead = int(steps @ corner)
+        edges[: flat.size - ahead, k] = flat[ahead:]
+    return PairBox(low, counts, edges)
 
 
 def _hashed_pairs(lows: Array, lattice: Lattice) -> Pairs:
