@@ -8,9 +8,6 @@ offset: nothing is interpolated, and the derivative has a closed form.
 
 from __future__ import annotations
 
-import functools
-import math
-from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +15,7 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed
 from refcloud.noise.directions import SETS, USUAL, Radius
-from refcloud.noise.mixing import Bits, Hash, _axis_bits, _choice, _joined, lattice_bits
+from refcloud.noise.mixing import Hash, _choice, lattice_bits
 from refcloud.noise.scattered import (
     Dtype,
     Numbers,
@@ -26,30 +23,20 @@ from refcloud.noise.scattered import (
     _dimensions,
     _scattered,
 )
+from refcloud.noise.simplex_corners import (
+    PEAKS,
+    SQUARED,
+    Columns,
+    _broadcast,
+    _corners,
+    _dotted,
+    _Room,
+    _skews,
+)
 
 # Coordinates are taken modulo this: in space it is a period of the lattice and of its
 # hash. Other dimensions have none along an axis, and a seam out there.
 WRAP = 3 * 2**32
-# A chunk's cells share their hashed lines where an axis has fewer: 16 KiB of them.
-MOST_LINES = 1 << 12
-
-Columns = Sequence[Array] | Array  # coordinates by axis
-
-# Squared radius of the kernel. A corner's opposite face lies at a distance whose square
-# is 1/2 in each dimension: a larger kernel is cut there, and jumps (E30).
-SQUARED: dict[Radius, float] = {"continuous": 0.5, "usual": 0.6}
-
-# Largest sum of kernels times the best gradients, by dimension and radius: what noise
-# is divided by, so that it stays in [-1, 1]. Each encloses the true supremum from above
-# by 0.5 % in the plane and space and 3 % in four dimensions, see the tests.
-PEAKS: dict[tuple[int, Radius], float] = {
-    (2, "continuous"): 0.010131,
-    (2, "usual"): 0.029026,
-    (3, "continuous"): 0.013073,
-    (3, "usual"): 0.030738,
-    (4, "continuous"): 0.016410,
-    (4, "usual"): 0.037830,
-}
 
 
 @checked
@@ -94,9 +81,10 @@ def simplex(
     (5, 2)
     """
     _dimensions(points, (2, 3, 4))
+    room = _Room()
     return _scattered(
         points,
-        lambda columns: _simplex(columns, seed, radius, hash, dtype),
+        lambda columns: _simplex(columns, seed, radius, hash, dtype, room),
         dtype,
         WRAP,
     )
@@ -151,12 +139,6 @@ def simplex_derivative(
     return both[..., 0], both[..., 1:]
 
 
-def _skews(dimensions: int) -> tuple[float, float]:
-    """Give the factors F and G of the coordinates' sum: to the cubes, and back."""
-    root = math.sqrt(dimensions + 1.0)
-    return (root - 1.0) / dimensions, (1.0 - 1.0 / root) / dimensions
-
-
 def _literal(points: Array, seed: int, radius: Radius) -> Array:
     """Give simplex noise as its formula says it: corner by corner, whole at once."""
     n = points.shape[-1]
@@ -177,17 +159,26 @@ def _literal(points: Array, seed: int, radius: Radius) -> Array:
 
 
 def _simplex(
-    columns: Columns, seed: int, radius: Radius, hash: Hash, dtype: Dtype
+    columns: Columns,
+    seed: int,
+    radius: Radius,
+    hash: Hash,
+    dtype: Dtype,
+    room: _Room | None = None,
 ) -> Numbers:
-    """Give simplex noise at finite places, one array per axis, which broadcast."""
-    total: Any = 0.0
-    for d, slope, kernel in _corners(columns, seed, radius, hash, dtype):
-        part = _dotted(slope, d)
+    """Give simplex noise at finite places, one array per axis, which broadcast.
+
+    The next call with the same room overwrites the result.
+    """
+    room = room or _Room()
+    total = room.take("total", _broadcast(columns), dtype)
+    part = room.take("part", total.shape, dtype)
+    products = room.take("products", (len(columns), *total.shape), dtype)
+    total[...] = 0.0
+    for d, slope, kernel in _corners(columns, seed, radius, hash, dtype, room):
         kernel *= kernel
         kernel *= kernel
-        part *= kernel
-        part += total
-        total = part
+        total += np.multiply(_dotted(slope, d, part, products), kernel, out=part)
     return total
 
 
@@ -197,96 +188,9 @@ def _derivative(
     """Give simplex noise and its derivative along each axis."""
     results: list[Any] = [0.0] * (1 + len(columns))
     for d, slope, kernel in _corners(columns, seed, radius, hash, dtype):
-        dot = _dotted(slope, d)
+        dot = _dotted(slope, d, np.empty_like(kernel), np.empty_like(d))
         fourth, change = kernel**4, 8.0 * kernel**3 * dot
         results[0] = results[0] + fourth * dot
         for k, (g, along) in enumerate(zip(slope, d, strict=True), 1):
             results[k] = results[k] + (fourth * g - change * along)
     return results
-
-
-def _corners(
-    columns: Columns, seed: int, radius: Radius, hash: Hash, dtype: Dtype
-) -> Iterator[tuple[list[Numbers], list[Numbers], Numbers]]:
-    """Visit the N + 1 corners: offsets and gradients by axis, and what is left of r^2.
-
-    The offsets are overwritten by the next corner's. What is left is not below 0.
-
-    The walk: from a corner to the next it is one step along one axis, the longest not
-    yet taken. So offsets and hashed words are not made anew but moved along. Every
-    pass reads and writes arrays of a chunk, which stay in the cache, at about 0.1 ns
-    a number in float32: in space some 25 passes in float64 for the place, 6 for each
-    corner's step along each axis, 25 for its hash, kernel and dot, and 3 look-ups of
-    0.6 ns each: 40 ns.
-    """
-    n = len(columns)
-    F, G = _skews(n)
-    # 1. Find the cube of the skewed lattice, and the place relative to its corner.
-    skewed = F * _sum(columns)
-    cells = [np.floor(column + skewed) for column in columns]
-    back = G * _sum(cells)
-    d = []
-    for column, cell in zip(columns, cells, strict=True):
-        first = column - cell
-        first += back
-        d.append(first.astype(dtype, copy=False))
-    # 2. Rank the axes, the longest first: each comparison moves one of two back.
-    rank = np.zeros((n, *d[0].shape), np.uint8)
-    for i in range(n):
-        for j in range(i + 1, n):
-            longer = (d[i] >= d[j]).view(np.uint8)
-            rank[j] += longer
-            rank[i] += longer ^ 1
-    # 3. Hash the lines through the corner, and how the hash changes one line on.
-    words, ahead = _lines(cells, seed, hash)
-    rows = (SETS[USUAL[n]].T / PEAKS[n, radius]).astype(dtype)
-    for corner in range(n + 1):
-        # 4. Step along the longest axis left. Booleans are cast before they are
-        # multiplied: otherwise numpy casts them through small buffers.
-        for k in range(n if corner else 0):
-            step = rank[k] == corner - 1
-            d[k] += G
-            d[k] -= step.astype(dtype)
-            words[k] += ahead[k] * step.astype(words[k].dtype)
-        # 5. Look up the gradient, and see how far the corner's kernel reaches.
-        pick = _choice(_joined(words, seed, hash), rows.shape[1])
-        slope = [row.take(pick, mode="wrap") for row in rows]
-        kernel = _dotted(d, d)
-        np.subtract(SQUARED[radius], kernel, out=kernel)
-        yield d, slope, np.maximum(kernel, 0.0, out=kernel)
-
-
-def _lines(cells: list[Array], seed: int, hash: Hash) -> tuple[list[Bits], list[Bits]]:
-    """Hash the lattice lines of cells by axis, and give what to add for the next line.
-
-    Cells close together share few lines: those are hashed once, and looked up.
-    """
-    words, ahead = [], []
-    for k, cell in enumerate(cells):
-        low, high = int(cell.min()), int(cell.max())
-        if high - low < MOST_LINES:
-            bits = _axis_bits(np.arange(low, high + 2), k, seed, hash)
-            at = (cell - low).astype(np.intp)
-            words.append(bits.take(at, mode="clip"))
-            ahead.append(np.diff(bits).take(at, mode="clip"))
-        else:
-            at = cell.astype(np.int64)
-            words.append(_axis_bits(at, k, seed, hash))
-            ahead.append(_axis_bits(at + 1, k, seed, hash) - words[k])
-    return words, ahead
-
-
-def _sum(columns: Columns) -> Array:
-    """Add the axes' arrays, which broadcast."""
-    first, *others = columns
-    return functools.reduce(np.add, others, first)
-
-
-def _dotted(a: list[Numbers], b: list[Numbers]) -> Numbers:
-    """Sum the products along the axes."""
-    first, *others = zip(a, b, strict=True)
-    total = first[0] * first[1]
-    product = np.empty_like(total)
-    for one, other in others:
-        total += np.multiply(one, other, out=product)
-    return total

@@ -14,7 +14,8 @@ from refcloud.conventions import Array, Seed, Shape
 from refcloud.noise.directions import Radius
 from refcloud.noise.mixing import Hash
 from refcloud.noise.scattered import CHUNK, Dtype, Numbers
-from refcloud.noise.simplex import PEAKS, WRAP, _simplex
+from refcloud.noise.simplex import WRAP, _simplex
+from refcloud.noise.simplex_corners import PEAKS, _Room
 from refcloud.noise.simplex_phases import _on_blocks, _regular
 from refcloud.refusal import complaint
 
@@ -87,7 +88,7 @@ def _by_rows(
     x, *others = axes
     shape = [axis.size for axis in others[::-1]]
     out = np.empty((int(np.prod(shape)), x.size), dtype)
-    step = max(1, CHUNK // max(1, x.size))
+    step, room = max(1, CHUNK // max(1, x.size)), _Room()
     for first in range(0, len(out) if x.size else 0, step):
         rows = np.arange(first, min(first + step, len(out)))
         places = np.unravel_index(rows, shape)[::-1]  # of y, z, w
@@ -95,5 +96,7 @@ def _by_rows(
             axis[place][:, np.newaxis]
             for axis, place in zip(others, places, strict=True)
         ]
-        out[rows] = _simplex([x[np.newaxis], *columns], seed, radius, hash, dtype)
+        lines = [x[np.newaxis], *columns]
+        part = slice(first, first + rows.size)
+        out[part] = _simplex(lines, seed, radius, hash, dtype, room)
     return out

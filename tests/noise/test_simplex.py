@@ -198,7 +198,7 @@ def test_the_lattice_is_symmetric_under_the_order_of_axes(order, usual) -> None:
     for columns in (at.T.copy(), at.T[order].copy()):
         radius = RADII[usual]
         corners = module("simplex")._corners(columns, 0, radius, "mixed", "float64")
-        kernels = [kernel for _, _, kernel in corners]
+        kernels = [kernel.copy() for _, _, kernel in corners]
         assert len(kernels) == 4
         distances.append(np.sort(kernels, axis=0))
     np.testing.assert_allclose(distances[0], distances[1], rtol=0, atol=SAME)
