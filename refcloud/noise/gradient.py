@@ -31,6 +31,7 @@ from refcloud.noise.scattered import (
     Numbers,
     Places,
     _dimensions,
+    _floored,
     _scattered,
     _split,
 )
@@ -190,8 +191,7 @@ def _literal(points: Array, seed: int, fade: Fade, name: Gradients) -> Array:
 
 def _gradient(columns: Array, how: How, box: PairBox | None = None) -> Numbers:
     """Give gradient noise at finite points, coordinates in rows, shape (N, n)."""
-    cells = np.floor(columns)
-    places = (columns - cells).astype(how.dtype, copy=False)
+    cells, places = _floored(columns, how.dtype)
     pairs = _hashed_pairs(cells, how.lattice()) if box is None else box.at(cells)
     return _paired(places, FADES[how.fade](places), pairs, how.rows())
 

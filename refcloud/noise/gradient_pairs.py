@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.noise.mixing import Bits, Hash, _axis_bits, _chosen, _joined
-from refcloud.noise.scattered import Numbers, _bounds
+from refcloud.noise.scattered import Numbers, _bounds, _index
 
 MOST_LATTICE = 1 << 21  # bytes of a box: beyond, the cache misses cost what it saves
 WORTH = 2  # lattice points hashed for a box take less time than one point's corners
@@ -75,9 +75,7 @@ class PairBox:
     def at(self, cells: Array) -> Pairs:
         """Look up the pairs of whole numbers (N, n), shape (..., 2, n) as [y, z, n]."""
         steps = np.cumprod([1, *self.counts[:-1]])
-        # Whole numbers below 2^53 are exact as float64, where they multiply faster.
-        inside = cells - np.array(self.low, np.float64)[:, np.newaxis]
-        start = (steps.astype(np.float64) @ inside).astype(np.intp)
+        start = _index(cells, self.low, steps)
         # A row holds the pairs of all edges: the cache is missed once, not four times.
         edges = self.edges.take(start, axis=0, mode="clip").T
         found = edges.astype(np.intp, order="C")

@@ -139,6 +139,7 @@ def _block(x: Cells, y: Cells, z: Cells, seed: int | None, smooth: bool) -> Arra
     if not smooth:
         return g
     f: Array = np.empty((z.size - 2, y.size - 2, x.size - 2))
+    planes *= 2  # every step hands two planes over to the next, and reads them again
     for first in range(0, z.size - 2, planes):
         f[first : first + planes] = _smoothed_inside(g[first : first + planes + 2])
     return f

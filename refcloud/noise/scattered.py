@@ -41,7 +41,7 @@ def _scattered(
 
     The noise gets the coordinates in rows, shape (N, n), taken modulo the period, and
     gives one result or a row of results. `inside` says that all are known to be finite
-    and within the period.
+    and within the period: then the noise gets the points themselves, to read.
     """
     flat = points.reshape(-1, points.shape[-1])
     out = np.empty((results, len(flat)), dtype)
@@ -49,8 +49,11 @@ def _scattered(
     for first in range(0, len(flat), CHUNK):
         part = slice(first, first + CHUNK)
         chunk = flat[part]
+        if inside:
+            out[:, part] = noise(chunk.T)
+            continue
         # A comparison with NaN does not hold.
-        if inside or max(-chunk.min(), chunk.max()) < most:
+        if max(-chunk.min(), chunk.max()) < most:
             out[:, part] = noise(chunk.T.copy())
             continue
         rows = np.isfinite(chunk).all(axis=1)
@@ -88,6 +91,26 @@ def _split(
     """
     floor = np.floor(reduced)
     return floor.astype(np.int64), (reduced - floor).astype(dtype, copy=False)
+
+
+def _floored(columns: Array, dtype: Dtype) -> tuple[Array, Numbers]:
+    """Split coordinates (N, n) into cells, still floats, and places in rows.
+
+    Passes follow the memory of the coordinates; rounding the places lays them in rows.
+    """
+    cells = np.floor(columns)
+    return cells, (columns - cells).astype(dtype, order="C", copy=False)
+
+
+def _index(cells: Array, low: list[int], steps: NDArray[np.int64]) -> NDArray[np.intp]:
+    """Give the place of cells (N, n) in a flat box that starts at low.
+
+    A coordinate is below 2^32, and a step along it at most half the box, 2^20: whole
+    numbers whose sum is below 2^53 are exact as float64, where they multiply faster.
+    """
+    index = steps.astype(np.float64) @ cells
+    index -= float(sum(int(s) * c for s, c in zip(steps, low, strict=True)))
+    return index.astype(np.intp)
 
 
 def _wrapped(cells: NDArray[np.int64], period: int | None) -> NDArray[np.int64]:

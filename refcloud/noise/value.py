@@ -23,6 +23,8 @@ from refcloud.noise.scattered import (
     Dtype,
     Numbers,
     _bounds,
+    _floored,
+    _index,
     _scattered,
     _wrapped,
 )
@@ -113,9 +115,7 @@ class Box:
     def around(self, cells: Array, taps: int) -> Numbers:
         """Look up f around whole numbers (3, n): [z, y, x / 2, point, 2]."""
         x, y, _ = self.counts
-        # Whole numbers below 2^53 are exact as float64, where they multiply faster.
-        inside = cells - np.array(self.low, np.float64)[:, np.newaxis]
-        start = (np.array([1.0, x, x * y]) @ inside).astype(np.intp)
+        start = _index(cells, self.low, np.array([1, x, x * y]))
         f = np.empty((taps, taps, taps // 2, start.size, 2), self.pairs.dtype)
         for k, j, i in np.ndindex(f.shape[:3]):
             # A view that starts further on spares adding to every index.
@@ -134,8 +134,7 @@ def _value(columns: Array, how: How, box: Box | None = None) -> Numbers:
     With two neighbours per axis: 4 look-ups at 2.5 ns, as they miss the nearest cache,
     and some 50 passes at 0.15 to 0.4 ns: 20 ns, besides what the box takes to fill.
     """
-    cells = np.floor(columns)
-    places = (columns - cells).astype(how.dtype, copy=False)
+    cells, places = _floored(columns, how.dtype)
     weights, around = _taps(how.interpolant, places)
     offsets = np.array(around)
     wx, wy, wz = ([w[k] for w in weights] for k in range(3))
