@@ -17,6 +17,13 @@ from numpy.typing import NDArray
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Seed
 from refcloud.noise.directions import PEAKS, SETS, Fade, Gradients, _named
+from refcloud.noise.gradient_pairs import (
+    Lattice,
+    PairBox,
+    _hashed_pairs,
+    _pair_box,
+    _paired,
+)
 from refcloud.noise.interpolate import _hermite_weight, _quintic_weight
 from refcloud.noise.mixing import Hash, _axis_bits, _choice, _joined, lattice_bits
 from refcloud.noise.scattered import (
@@ -24,6 +31,7 @@ from refcloud.noise.scattered import (
     Numbers,
     Places,
     _dimensions,
+    _floored,
     _scattered,
     _split,
 )
@@ -90,7 +98,10 @@ def gradient(
     """
     name = _named(gradients, _dimensions(points, (2, 3)))
     how = How(seed, fade, name, period, hash, dtype)
-    return _scattered(points, lambda axes: _gradient(axes, how), dtype, period)
+    box = _pair_box(points, how.lattice())
+    return _scattered(
+        points, lambda axes: _gradient(axes, how, box), dtype, period, inside=bool(box)
+    )
 
 
 @checked
@@ -160,6 +171,10 @@ class How:
         """Give the gradients, scaled, one row per axis."""
         return SETS[self.gradients].T / PEAKS[self.gradients][self.fade]
 
+    def lattice(self) -> Lattice:
+        """Give which gradient each lattice point has."""
+        return Lattice(len(SETS[self.gradients]), self.seed, self.hash, self.period)
+
 
 def _literal(points: Array, seed: int, fade: Fade, name: Gradients) -> Array:
     """Give gradient noise as its formula says it: corner by corner, whole at once."""
@@ -174,19 +189,11 @@ def _literal(points: Array, seed: int, fade: Fade, name: Gradients) -> Array:
     return total / PEAKS[name][fade]
 
 
-def _gradient(columns: Array, how: How) -> Numbers:
+def _gradient(columns: Array, how: How, box: PairBox | None = None) -> Numbers:
     """Give gradient noise at finite points, coordinates in rows, shape (N, n)."""
-    slopes, offsets, fades = _corners(columns, how)
-    # Dot each corner's gradient with the offset from it: shape (2, ..., 2, n).
-    total, *others = slopes
-    total *= offsets[0]
-    for slope, offset in zip(others, offsets[1:], strict=True):
-        slope *= offset
-        total += slope
-    # Blend the two ends of one axis after another.
-    for fade in fades[::-1]:
-        total = _blended(total, fade)
-    return total
+    cells, places = _floored(columns, how.dtype)
+    pairs = _hashed_pairs(cells, how.lattice()) if box is None else box.at(cells)
+    return _paired(places, FADES[how.fade](places), pairs, how.rows())
 
 
 def _derivative(columns: Array, how: How) -> list[Numbers]:

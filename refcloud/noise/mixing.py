@@ -150,8 +150,12 @@ def _joined(axes: Sequence[Bits], seed: int, hash: Hash) -> Bits:
 
 
 def _choice(bits: Bits, count: int) -> NDArray[np.intp]:
-    """Choose one of `count` evenly by the upper 16 bits."""
+    """Choose one of `count` evenly by the upper 16 bits, as an index."""
+    return _chosen(bits, count).astype(np.intp)
+
+
+def _chosen(bits: Bits, count: int) -> Bits:
     upper = bits >> 16
     upper *= np.uint32(count)
     upper >>= 16
-    return upper.astype(np.intp)
+    return upper

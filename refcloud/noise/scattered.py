@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -35,11 +35,13 @@ def _scattered(
     dtype: Dtype,
     period: int | None = None,
     results: int = 1,
+    inside: bool = False,
 ) -> Numbers:
     """Apply noise to the finite points; shape (..., results), or (...,) for one.
 
     The noise gets the coordinates in rows, shape (N, n), taken modulo the period, and
-    gives one result or a row of results.
+    gives one result or a row of results. `inside` says that all are known to be finite
+    and within the period: then the noise gets the points themselves, to read.
     """
     flat = points.reshape(-1, points.shape[-1])
     out = np.empty((results, len(flat)), dtype)
@@ -47,7 +49,11 @@ def _scattered(
     for first in range(0, len(flat), CHUNK):
         part = slice(first, first + CHUNK)
         chunk = flat[part]
-        if np.abs(chunk).max() < most:  # not so where any is NaN
+        if inside:
+            out[:, part] = noise(chunk.T)
+            continue
+        # A comparison with NaN does not hold.
+        if max(-chunk.min(), chunk.max()) < most:
             out[:, part] = noise(chunk.T.copy())
             continue
         rows = np.isfinite(chunk).all(axis=1)
@@ -59,6 +65,23 @@ def _scattered(
     return np.ascontiguousarray(out.T).reshape(*points.shape[:-1], results)
 
 
+def _bounds(points: Array, period: int | None) -> Iterator[NDArray[np.int64]]:
+    """Give the lowest and highest cells along each axis, (N, 2), of points in a period.
+
+    First those of a cube around all, which is quick to find, then those of a tight box;
+    none where any point is not finite or lies beyond the period.
+    """
+    if not points.size:
+        return
+    low, high = points.min(), points.max()
+    if not max(-low, high) < (PERIOD if period is None else float(period)):
+        return
+    columns = points.reshape(-1, points.shape[-1]).T
+    yield np.floor([[low, high]] * len(columns)).astype(np.int64)
+    ends = [(column.min(), column.max()) for column in columns]
+    yield np.floor(ends).astype(np.int64)
+
+
 def _split(
     reduced: Array, dtype: Dtype = "float64"
 ) -> tuple[NDArray[np.int64], Numbers]:
@@ -68,6 +91,26 @@ def _split(
     """
     floor = np.floor(reduced)
     return floor.astype(np.int64), (reduced - floor).astype(dtype, copy=False)
+
+
+def _floored(columns: Array, dtype: Dtype) -> tuple[Array, Numbers]:
+    """Split coordinates (N, n) into cells, still floats, and places in rows.
+
+    Passes follow the memory of the coordinates; rounding the places lays them in rows.
+    """
+    cells = np.floor(columns)
+    return cells, (columns - cells).astype(dtype, order="C", copy=False)
+
+
+def _index(cells: Array, low: list[int], steps: NDArray[np.int64]) -> NDArray[np.intp]:
+    """Give the place of cells (N, n) in a flat box that starts at low.
+
+    A coordinate is below 2^32, and a step along it at most half the box, 2^20: whole
+    numbers whose sum is below 2^53 are exact as float64, where they multiply faster.
+    """
+    index = steps.astype(np.float64) @ cells
+    index -= float(sum(int(s) * c for s, c in zip(steps, low, strict=True)))
+    return index.astype(np.intp)
 
 
 def _wrapped(cells: NDArray[np.int64], period: int | None) -> NDArray[np.int64]:

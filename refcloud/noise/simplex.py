@@ -8,12 +8,14 @@ offset: nothing is interpolated, and the derivative has a closed form.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed
 from refcloud.noise.directions import SETS, USUAL, Radius
-from refcloud.noise.mixing import Hash, _axis_bits, _choice, _joined, lattice_bits
+from refcloud.noise.mixing import Hash, _choice, lattice_bits
 from refcloud.noise.scattered import (
     Dtype,
     Numbers,
@@ -21,26 +23,20 @@ from refcloud.noise.scattered import (
     _dimensions,
     _scattered,
 )
+from refcloud.noise.simplex_corners import (
+    PEAKS,
+    SQUARED,
+    Columns,
+    _broadcast,
+    _corners,
+    _dotted,
+    _Room,
+    _skews,
+)
 
 # Coordinates are taken modulo this: in space it is a period of the lattice and of its
 # hash. Other dimensions have none along an axis, and a seam out there.
 WRAP = 3 * 2**32
-
-# Squared radius of the kernel. A corner's opposite face lies at a distance whose square
-# is 1/2 in each dimension: a larger kernel is cut there, and jumps (E30).
-SQUARED: dict[Radius, float] = {"continuous": 0.5, "usual": 0.6}
-
-# Largest sum of kernels times the best gradients, by dimension and radius: what noise
-# is divided by, so that it stays in [-1, 1]. Each encloses the true supremum from above
-# by 0.5 % in the plane and space and 3 % in four dimensions, see the tests.
-PEAKS: dict[tuple[int, Radius], float] = {
-    (2, "continuous"): 0.010131,
-    (2, "usual"): 0.029026,
-    (3, "continuous"): 0.013073,
-    (3, "usual"): 0.030738,
-    (4, "continuous"): 0.016410,
-    (4, "usual"): 0.037830,
-}
 
 
 @checked
@@ -85,9 +81,10 @@ def simplex(
     (5, 2)
     """
     _dimensions(points, (2, 3, 4))
+    room = _Room()
     return _scattered(
         points,
-        lambda columns: _simplex(columns, seed, radius, hash, dtype),
+        lambda columns: _simplex(columns, seed, radius, hash, dtype, room),
         dtype,
         WRAP,
     )
@@ -142,12 +139,6 @@ def simplex_derivative(
     return both[..., 0], both[..., 1:]
 
 
-def _skews(dimensions: int) -> tuple[float, float]:
-    """Give the factors F and G of the coordinates' sum: to the cubes, and back."""
-    root = np.sqrt(dimensions + 1.0)
-    return (root - 1.0) / dimensions, (1.0 - 1.0 / root) / dimensions
-
-
 def _literal(points: Array, seed: int, radius: Radius) -> Array:
     """Give simplex noise as its formula says it: corner by corner, whole at once."""
     n = points.shape[-1]
@@ -168,71 +159,38 @@ def _literal(points: Array, seed: int, radius: Radius) -> Array:
 
 
 def _simplex(
-    columns: Array, seed: int, radius: Radius, hash: Hash, dtype: Dtype
+    columns: Columns,
+    seed: int,
+    radius: Radius,
+    hash: Hash,
+    dtype: Dtype,
+    room: _Room | None = None,
 ) -> Numbers:
-    """Give simplex noise at finite points, coordinates in rows, shape (N, n)."""
-    offsets, slopes, kernel = _corners(columns, seed, radius, hash, dtype)
-    total = _dotted(slopes, offsets)
-    kernel *= kernel
-    kernel *= kernel
-    total *= kernel
-    return total.sum(axis=0)
+    """Give simplex noise at finite places, one array per axis, which broadcast.
+
+    The next call with the same room overwrites the result.
+    """
+    room = room or _Room()
+    total = room.take("total", _broadcast(columns), dtype)
+    part = room.take("part", total.shape, dtype)
+    products = room.take("products", (len(columns), *total.shape), dtype)
+    total[...] = 0.0
+    for d, slope, kernel in _corners(columns, seed, radius, hash, dtype, room):
+        kernel *= kernel
+        kernel *= kernel
+        total += np.multiply(_dotted(slope, d, part, products), kernel, out=part)
+    return total
 
 
 def _derivative(
-    columns: Array, seed: int, radius: Radius, hash: Hash, dtype: Dtype
+    columns: Columns, seed: int, radius: Radius, hash: Hash, dtype: Dtype
 ) -> list[Numbers]:
     """Give simplex noise and its derivative along each axis."""
-    offsets, slopes, kernel = _corners(columns, seed, radius, hash, dtype)
-    dot = _dotted(slopes, offsets)
-    fourth, change = kernel**4, 8.0 * kernel**3 * dot
-    along = [
-        (fourth * g - change * d).sum(axis=0)
-        for g, d in zip(slopes, offsets, strict=True)
-    ]
-    return [(fourth * dot).sum(axis=0), *along]
-
-
-def _corners(
-    columns: Array, seed: int, radius: Radius, hash: Hash, dtype: Dtype
-) -> tuple[list[Numbers], list[Numbers], Numbers]:
-    """Give offsets and gradients of all corners, one array (N + 1, n) per axis.
-
-    The third is what is left of the squared radius, not below 0, shape (N + 1, n).
-    """
-    n = len(columns)
-    F, G = _skews(n)
-    # Find the cube of the skewed lattice, and the place relative to its corner.
-    cells = np.floor(columns + F * columns.sum(axis=0))
-    first = (columns - cells + G * cells.sum(axis=0)).astype(dtype, copy=False)
-    # Rank the axes, the longest first: corner c has stepped along those of rank < c.
-    rank = np.zeros(first.shape, np.uint8)
-    for i in range(n):
-        for j in range(i + 1, n):
-            longer = first[i] >= first[j]
-            rank[j] += longer
-            rank[i] += ~longer
-    number = np.arange(n + 1, dtype=np.uint8)[:, np.newaxis]
-    unskewed = (G * number).astype(dtype)
-    words, offsets = [], []
-    for k, cell in enumerate(cells.astype(np.int64)):
-        stepped = rank[k] < number
-        here, there = _axis_bits(np.stack((cell, cell + 1)), k, seed, hash)
-        words.append(here + (there - here) * stepped)
-        offset = first[k] + unskewed
-        offset -= stepped
-        offsets.append(offset)
-    rows = (SETS[USUAL[n]].T / PEAKS[n, radius]).astype(dtype)
-    pick = _choice(_joined(words, seed, hash), rows.shape[1])
-    kernel = SQUARED[radius] - _dotted(offsets, offsets)
-    slopes = [row.take(pick, mode="wrap") for row in rows]
-    return offsets, slopes, np.maximum(kernel, 0.0, out=kernel)
-
-
-def _dotted(a: list[Numbers], b: list[Numbers]) -> Numbers:
-    """Sum the products along the axes."""
-    first, *others = zip(a, b, strict=True)
-    total = first[0] * first[1]
-    for one, other in others:
-        total += one * other
-    return total
+    results: list[Any] = [0.0] * (1 + len(columns))
+    for d, slope, kernel in _corners(columns, seed, radius, hash, dtype):
+        dot = _dotted(slope, d, np.empty_like(kernel), np.empty_like(d))
+        fourth, change = kernel**4, 8.0 * kernel**3 * dot
+        results[0] = results[0] + fourth * dot
+        for k, (g, along) in enumerate(zip(slope, d, strict=True), 1):
+            results[k] = results[k] + (fourth * g - change * along)
+    return results

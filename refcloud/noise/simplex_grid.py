@@ -1,4 +1,7 @@
-"""Simplex noise on a grid: a few rows at a time, since it has no separable form."""
+"""Simplex noise on a grid: a few rows at a time, since it has no separable form.
+
+Grids of space with a whole number of samples per unit go the way of `simplex_phases`.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,8 @@ from refcloud.noise.directions import Radius
 from refcloud.noise.mixing import Hash
 from refcloud.noise.scattered import CHUNK, Dtype, Numbers
 from refcloud.noise.simplex import WRAP, _simplex
+from refcloud.noise.simplex_corners import PEAKS, _Room
+from refcloud.noise.simplex_phases import _on_blocks, _regular
 from refcloud.refusal import complaint
 
 
@@ -69,15 +74,29 @@ def simplex_grid(
         raise ValueError(complaint("z", "a third axis, as there is a fourth", "none"))
     axes = [np.fmod(axis, WRAP) for axis in (x, y, z, w) if axis is not None]
     shape = [axis.size for axis in axes[::-1]]
-    out = np.empty(shape, dtype).reshape(-1, x.size)
-    step = max(1, CHUNK // max(1, x.size))
+    if radius == "continuous" and (cut := _regular(axes)) is not None:
+        whole = _on_blocks(cut, seed, hash, PEAKS[3, radius], dtype)
+        depth, height, width = shape
+        return np.ascontiguousarray(whole[:depth, :height, :width])
+    return _by_rows(axes, seed, radius, hash, dtype).reshape(shape)
+
+
+def _by_rows(
+    axes: list[Array], seed: int, radius: Radius, hash: Hash, dtype: Dtype
+) -> Numbers:
+    """Give simplex noise on any grid, shape (rows, W), a few rows at a time."""
+    x, *others = axes
+    shape = [axis.size for axis in others[::-1]]
+    out = np.empty((int(np.prod(shape)), x.size), dtype)
+    step, room = max(1, CHUNK // max(1, x.size)), _Room()
     for first in range(0, len(out) if x.size else 0, step):
         rows = np.arange(first, min(first + step, len(out)))
-        places = np.unravel_index(rows, shape[:-1])[::-1]  # of y, z, w
-        columns = np.empty((len(axes), rows.size, x.size))
-        columns[0] = axes[0]
-        for column, axis, place in zip(columns[1:], axes[1:], places, strict=True):
-            column[:] = axis[place][:, np.newaxis]
-        noise = _simplex(columns.reshape(len(axes), -1), seed, radius, hash, dtype)
-        out[rows] = noise.reshape(rows.size, -1)
-    return out.reshape(shape)
+        places = np.unravel_index(rows, shape)[::-1]  # of y, z, w
+        columns = [
+            axis[place][:, np.newaxis]
+            for axis, place in zip(others, places, strict=True)
+        ]
+        lines = [x[np.newaxis], *columns]
+        part = slice(first, first + rows.size)
+        out[part] = _simplex(lines, seed, radius, hash, dtype, room)
+    return out

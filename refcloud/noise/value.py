@@ -7,7 +7,6 @@ same order, so their values have the same bits.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,11 +20,12 @@ from refcloud.noise.gradient import Period
 from refcloud.noise.hashing import _lattice_random
 from refcloud.noise.lattice import Cells, _block, _smoothed_inside
 from refcloud.noise.scattered import (
-    PERIOD,
     Dtype,
     Numbers,
+    _bounds,
+    _floored,
+    _index,
     _scattered,
-    _split,
     _wrapped,
 )
 from refcloud.noise.weights import Interpolant, _taps
@@ -89,12 +89,14 @@ def value(
     """
     how = How(seed, interpolant, smooth, period, dtype)
     box = _box_of(points, how)
-    return _scattered(points, lambda columns: _value(columns, how, box), dtype, period)
+    return _scattered(
+        points, lambda axes: _value(axes, how, box), dtype, period, inside=bool(box)
+    )
 
 
 @dataclass(frozen=True)
 class Box:
-    """The lattice values of a box of cells, in one row.
+    """The lattice values of a box of cells.
 
     Attributes
     ----------
@@ -102,25 +104,55 @@ class Box:
         The lowest cell's coordinates x, y and z.
     counts
         How many lattice values lie along x, y and z.
-    values
-        f as [z, y, x], flat.
+    pairs
+        f and its neighbour along x, for [z, y, x] in one row: shape (L, 2).
     """
 
     low: list[int]
     counts: list[int]
-    values: Numbers
+    pairs: Numbers
+
+    def around(self, cells: Array, taps: int) -> Numbers:
+        """Look up f around whole numbers (3, n): [z, y, x / 2, point, 2]."""
+        x, y, _ = self.counts
+        start = _index(cells, self.low, np.array([1, x, x * y]))
+        f = np.empty((taps, taps, taps // 2, start.size, 2), self.pairs.dtype)
+        for k, j, i in np.ndindex(f.shape[:3]):
+            # A view that starts further on spares adding to every index.
+            ahead = self.pairs[(k * y + j) * x + 2 * i :]
+            np.take(ahead, start, axis=0, out=f[k, j, i], mode="clip")
+        return f
 
 
 def _value(columns: Array, how: How, box: Box | None = None) -> Numbers:
-    """Give h at finite points, coordinates in rows, shape (3, n)."""
-    # Find the cell of each point, and the weights of its neighbours along each axis.
-    cells, places = _split(columns, how.dtype)
-    wx, wy, wz = (_taps(how.interpolant, t)[0] for t in places)
-    offsets = np.array(_taps(how.interpolant, places[0])[1])
-    # Look up the lattice values around each point, [z, y, x, point].
-    f = _neighbours(cells, offsets, how, box)
-    # Interpolate along x, then y, then z.
-    f = _weighted(wx, [f[:, :, k] for k in range(len(offsets))])
+    """Give h at finite points, coordinates in rows, shape (3, n).
+
+    1. Find the cell of each point, and the weights of its neighbours along each axis.
+    2. Look up the lattice values around each point, two along x at a time.
+    3. Interpolate along x, then y, then z.
+
+    With two neighbours per axis: 4 look-ups at 2.5 ns, as they miss the nearest cache,
+    and some 50 passes at 0.15 to 0.4 ns: 20 ns, besides what the box takes to fill.
+    """
+    cells, places = _floored(columns, how.dtype)
+    weights, around = _taps(how.interpolant, places)
+    offsets = np.array(around)
+    wx, wy, wz = ([w[k] for w in weights] for k in range(3))
+    box = box or _box(cells.astype(np.int64), cells.shape[1], how)
+    if box is None:
+        # The points lie far apart: every one hashes its own neighbours.
+        f = _hashed(cells.astype(np.int64), offsets, how)
+        f = _weighted(wx, [f[:, :, k] for k in range(len(offsets))])
+    else:
+        f = box.around(cells, len(offsets))
+        both = np.empty(f.shape[2:], f.dtype)
+        for k, weight in enumerate(wx):
+            both[k // 2, :, k % 2] = weight
+        f *= both
+        first, *others = (f[:, :, k, :, end] for k, end in np.ndindex(f.shape[2], 2))
+        f = first + others[0]
+        for other in others[1:]:
+            f += other
     f = _weighted(wy, [f[:, k] for k in range(len(offsets))])
     return _weighted(wz, list(f))
 
@@ -135,19 +167,11 @@ def _weighted(weights: Iterable[Array], values: Iterable[Array]) -> Array:
 
 def _box_of(points: Array, how: How) -> Box | None:
     """Hash the box of all points once, if they lie close together."""
-    wrap = PERIOD if how.period is None else float(how.period)
-    if not points.size:
-        return None
-    low, high = points.min(), points.max()
-    if not max(-low, high) < wrap:  # not so where any is NaN
-        return None
     # A cube around all is quick to find; a tight box is looked for where that is large.
-    count = points.size // 3
-    cube = np.floor([[low, high]] * 3).astype(np.int64)
-    if box := _box(cube, count, how):
-        return box
-    ends = [(column.min(), column.max()) for column in points.reshape(-1, 3).T]
-    return _box(np.floor(ends).astype(np.int64), count, how)
+    boxes = (
+        _box(cells, points.size // 3, how) for cells in _bounds(points, how.period)
+    )
+    return next((box for box in boxes if box is not None), None)
 
 
 def _box(cells: Cells, points: int, how: How) -> Box | None:
@@ -167,26 +191,16 @@ def _box(cells: Cells, points: int, how: How) -> Box | None:
         for low, count in zip(lows, counts, strict=True)
     )
     table = _block(*lines, seed=how.seed, smooth=how.smooth)
-    values = table.astype(how.dtype, copy=False).reshape(-1)
-    return Box([low - int(reach[0]) for low in lows], counts, values)
+    pairs = np.empty((table.size, 2), how.dtype)
+    pairs[:, 0] = table.reshape(-1)
+    pairs[:-1, 1] = pairs[1:, 0]
+    pairs[-1, 1] = 0.0  # no point's
+    return Box([low - int(reach[0]) for low in lows], counts, pairs)
 
 
-def _neighbours(cells: Cells, offsets: Cells, how: How, box: Box | None) -> Numbers:
-    """Give f at each point's neighbours, shape (K, K, K, n) as [z, y, x, point]."""
+def _hashed(cells: Cells, offsets: Cells, how: How) -> Numbers:
+    """Hash f at each point's neighbours, shape (K, K, K, n) as [z, y, x, point]."""
     n, taps, halo = cells.shape[1], len(offsets), int(how.smooth)
-    box = box or _box(cells, n, how)
-    if box is not None:
-        # The points lie close together: look up.
-        ix, iy, iz = (c - low for c, low in zip(cells, box.low, strict=True))
-        start = (iz * box.counts[1] + iy) * box.counts[0] + ix
-        step = offsets - offsets[0]
-        f = np.empty((taps, taps, taps, n), box.values.dtype)
-        for k, j, i in itertools.product(range(taps), repeat=3):
-            ahead = (step[k] * box.counts[1] + step[j]) * box.counts[0] + step[i]
-            # A view that starts further on spares adding to every index.
-            np.take(box.values[ahead:], start, out=f[k, j, i], mode="clip")
-        return f
-    # They lie far apart: every point hashes its own neighbours.
     around = np.arange(offsets[0] - halo, offsets[-1] + halo + 1)[:, np.newaxis]
     f = np.empty((taps, taps, taps, n), how.dtype)
     for first in range(0, n, HASHED_CHUNK):

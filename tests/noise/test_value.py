@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from twins.noise import INTERPOLANTS, TWO_POINT, coordinates, points, seeds_or_none
 
-from refcloud.noise import cosine, smoothed, value, value_grid
+from refcloud.noise import cosine, smoothed, uniform, value, value_grid
 from refcloud.noise.lattice import PERIOD
 from refcloud.noise.weights import PEAKS
 
@@ -194,6 +194,18 @@ def test_chunks_do_not_show(places, how, chunk, hashed_chunk) -> None:
         np.testing.assert_array_equal(value(array, **how), whole)
         patch.setattr(module("value"), "MOST_LATTICE", 0)
         np.testing.assert_array_equal(value(array, **how), whole)
+
+
+@settings(max_examples=25)
+@given(ways, st.sampled_from([0.0, -1.5, PERIOD - 3.0, 3.0 - PERIOD]))
+def test_the_box_of_close_points_does_not_show(how, corner) -> None:
+    close = corner + 3.0 * uniform(np.arange(300)[:, None], np.arange(3), seed=1)
+    if how["interpolant"] == "cosine":
+        how["interpolant"] = "quintic"
+    boxed = value(close, **how)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module("value"), "MOST_LATTICE", 0)
+        np.testing.assert_array_equal(value(close, **how), boxed)
 
 
 @settings(max_examples=25)
