@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import lzma
 import math
 import os
 import struct
@@ -23,8 +25,16 @@ WHOLE = ("iu", "a whole number", 8)
 TEXT = ("U", "a short text", 4 * 64)  # names of formats and kernels are shorter
 SUFFIX = ".npy"  # what numpy appends to an array's name inside the archive
 # Everything that the readers of zip archives and of array headers raise on damage.
+MOST_HEADER = 10_000  # characters; those of the files here have about 100
 DAMAGE = (
-    *(zipfile.BadZipFile, zlib.error, struct.error, tokenize.TokenError, EOFError),
+    *(
+        zipfile.BadZipFile,
+        zlib.error,
+        lzma.LZMAError,
+        struct.error,
+        tokenize.TokenError,
+        EOFError,
+    ),
     *(OSError, ValueError, KeyError, TypeError, OverflowError, RuntimeError),
     *(SyntaxError, UserWarning),
 )
@@ -172,8 +182,9 @@ def read_arrays(
     file = Path(path)
     if not file.exists():
         raise FileNotFoundError(f"{file}: expected a {format} file, got no such file")
-    if file.is_dir():
-        raise ValueError(f"{file}: expected a {format} file, got a folder")
+    if not file.is_file():
+        kind = "a folder" if file.is_dir() else "a device"
+        raise ValueError(f"{file}: expected a {format} file, got {kind}")
     sizes: dict[str, int] = {}
     try:
         with _opened(file, format) as archive:
@@ -252,8 +263,16 @@ def _read(
     return array.astype(dtype.newbyteorder("="), copy=False)
 
 
-def _header(member: Any) -> tuple[tuple[int, ...], bool, np.dtype]:
+def _header(stream: Any) -> tuple[tuple[int, ...], bool, np.dtype]:
     """Read shape, order and kind of number, and none of the numbers."""
+    # The header says how long it is: a long one is refused before it is unpacked.
+    start = stream.read(np.lib.format.MAGIC_LEN + 4)
+    width = 2 if start[6:7] == b"\x01" else 4
+    length = int.from_bytes(start[8 : 8 + width], "little")
+    if length > MOST_HEADER:
+        raise ValueError("a header that is too long")
+    rest = stream.read(length - (4 - width))
+    member = io.BytesIO(start + rest)
     version = np.lib.format.read_magic(member)
     if version == (1, 0):
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(member)

@@ -221,3 +221,12 @@ def test_a_truncated_file_is_refused(good, data):
     path.write_bytes(content[: data.draw(st.integers(0, len(content) - 1))])
     with pytest.raises(ValueError, match=r"a\.npz: expected"):
         read(path)
+
+
+def test_a_header_that_unpacks_to_gigabytes_is_refused_first(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.npz"
+    header = b"\x93NUMPY\x02\x00" + (10**8).to_bytes(4, "little") + b" " * 100_000
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("format.npy", header)
+    with pytest.raises(ValueError, match="got a damaged one"):
+        read_arrays(path, "refcloud.voxels", 1, {}, 1)

@@ -38,6 +38,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     failure is one line on stderr.
     """
     words = list(sys.argv[1:] if argv is None else argv)
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by the caller
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))
     try:
         # What overflows is refused in one line, not warned about.
         with np.errstate(divide="raise", over="raise", invalid="raise"):

@@ -151,7 +151,9 @@ def generate(
         density = largest_part(displace(depth, noise, y, relief=relief, edge=edge))
     else:
         points = np.stack(np.broadcast_arrays(*np.ix_(z, y, x))[::-1], axis=-1)
-        Q = np.max([evaluate_quadric(q, points) for q in quadrics], axis=0)
+        Q = evaluate_quadric(quadrics[0], points)
+        for q in quadrics[1:]:
+            np.maximum(Q, evaluate_quadric(q, points), out=Q)
         watch("quadric", Q)
         density = modulate(Q, np.abs(noise), threshold=threshold, dynamics=dynamics)
     watch("density", density)

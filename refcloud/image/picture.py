@@ -172,6 +172,8 @@ def load_picture(path: str | Path) -> Picture:
 def _read_npy(path: Path) -> Array:
     """Read a linear picture; type and shape are checked before memory is taken."""
     try:
+        if path.exists() and not path.is_file():
+            raise ValueError("no plain file")
         stored = np.load(path, mmap_mode="r", allow_pickle=False)
     except FileNotFoundError:
         raise FileNotFoundError(

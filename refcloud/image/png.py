@@ -94,6 +94,8 @@ def read_png(path: str | Path) -> Codes:
     Source: the PNG specification.
     """
     try:
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise ValueError(complaint(f"{path}", "a readable file", "no plain file"))
         if os.path.getsize(path) > MOST_BYTES:
             raise ValueError(
                 f"{path}: expected at most {MOST_BYTES} bytes, got a larger file"
@@ -122,6 +124,8 @@ def _check_png(path: str | Path, data: bytes) -> bool:
     chunks = list(_chunks(path, data))
     if chunks[0][0] != b"IHDR" or len(chunks[0][1]) != 13:
         raise ValueError(_damaged(path, "no header"))
+    if sum(name == b"IHDR" for name, _ in chunks) > 1:
+        raise ValueError(_damaged(path, "two headers"))
     if chunks[-1][0] != b"IEND":
         raise ValueError(_damaged(path, "cut short"))
     width, height, depth, kind = struct.unpack(">IIBB", chunks[0][1][:10])

@@ -48,13 +48,15 @@ def through_the_middle(balls: Metaballs, sigma_t: float) -> float:
     tau, at least 0; 0 for an empty cloud.
     """
     mass = balls.densities * balls.radii**3
-    if not mass.sum() > 0.0:
+    whole = math.fsum(mass)  # fsum is exact: no order of the balls shows
+    if not whole > 0.0:
         return 0.0
-    middle = (mass / mass.sum()) @ balls.centers
+    shares = mass / whole
+    middle = np.array([math.fsum(shares * axis) for axis in balls.centers.T])
     square = np.square(balls.centers - middle)
     depth = axis_depth(sigma_t, balls.densities, balls.radii, balls.kernel)
     total = 0.0
     for axis in range(3):
         q = (square.sum(axis=1) - square[:, axis]) / np.square(balls.radii)
-        total += float(depth @ footprint_of(q, balls.kernel, "chord"))
+        total += math.fsum(depth * footprint_of(q, balls.kernel, "chord"))
     return total / 3.0 if math.isfinite(total) else 0.0

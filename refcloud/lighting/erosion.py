@@ -21,6 +21,7 @@ OCTAVES = 4
 PERSISTENCE = 0.6
 NEARLY_ALL = 0.64  # 99 % of 4 million samples of |eq 1| with these octaves lie below
 SAMPLES = 2.0  # per cell of the finest octave: its bumps must show, not only exist
+LEAST_SPACING = 1e-90  # counts of cells stay finite numbers, whatever the radii
 MOST_CELLS = 8_000_000  # 64 MB of float64; a wider cloud gets a coarser table
 SOFT = 0.3  # width over which the cut-back footprint rises
 
@@ -58,7 +59,7 @@ def detail_grid(
 
     Source: an extension of paper M, eq 12.
     """
-    spacing = cell / 2 ** (OCTAVES - 1) / SAMPLES
+    spacing = max(cell / 2 ** (OCTAVES - 1) / SAMPLES, LEAST_SPACING)
     while spacing < pixel:
         spacing *= 2.0
     while np.prod(np.ceil((upper - lower) / spacing) + 3.0) > MOST_CELLS:

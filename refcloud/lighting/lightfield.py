@@ -21,6 +21,7 @@ from refcloud.lighting.order import depth_order
 from refcloud.metaballs import Metaballs, profile
 
 SPACING = 0.5  # nodes per median radius: no ball of that size falls between nodes
+LEAST_SPACING = 1e-90  # counts of nodes stay finite numbers, whatever the radii
 MOST_NODES = 1 << 20  # a wider cloud gets a coarser table
 # Weight of the ball's own value against a full density's 1: it decides where the table
 # is empty, and nowhere else shows.
@@ -78,7 +79,7 @@ def light_field(
     largest = balls.densities.max(initial=0.0)
     if not largest > 0.0:
         return LightField(np.zeros((1, 1, 1, channels)), np.zeros(3), 1.0)
-    spacing = SPACING * float(np.median(balls.radii))
+    spacing = max(SPACING * float(np.median(balls.radii)), LEAST_SPACING)
     lower = (balls.centers - radii[:, None]).min(axis=0)
     upper = (balls.centers + radii[:, None]).max(axis=0)
     while np.prod(np.ceil((upper - lower) / spacing) + 1.0) > MOST_NODES:

@@ -18,6 +18,7 @@ from refcloud.raster.footprint import Patch, footprint_of, opacity_of, patch_of
 
 # A pixel shows the place half way from the ball's middle plane to its front surface.
 FRONT = 0.5
+CHUNK = 1 << 16  # pixels of one ball at a time: a near ball fills the picture
 
 
 @dataclass(frozen=True)
@@ -94,10 +95,15 @@ def draw_over(pixels: Array, shading: Shading, ball: Ball) -> None:
     """
     height, width = pixels.shape[:2]
     patch = patch_of(ball.x, ball.y, ball.radius, width, height)
-    if patch is not None:
-        right, up = _offsets(patch, ball)
-        behind = pixels[patch.rows, patch.columns]
-        blend_patch(behind, ball_source(patch.q, right, up[:, None], shading, ball))
+    if patch is None:
+        return
+    right, up = _offsets(patch, ball)
+    behind = pixels[patch.rows, patch.columns]
+    step = max(1, CHUNK // len(right))
+    for top in range(0, len(up), step):
+        some = slice(top, top + step)
+        source = ball_source(patch.q[some], right, up[some, None], shading, ball)
+        blend_patch(behind[some], source)
 
 
 def draw_under(pixels: Array, shading: Shading, ball: Ball, least: float) -> bool:
@@ -131,11 +137,14 @@ def draw_under(pixels: Array, shading: Shading, ball: Ball, least: float) -> boo
     if not len(j):
         return bool(clear.any())
     right, up = _offsets(patch, ball)
-    source = ball_source(patch.q[j, i], right[i], up[j], shading, ball)
-    j, i = j + patch.rows.start, i + patch.columns.start
-    front = pixels[j, i]
-    blend_patch(front, source, "ONE_MINUS_DST_ALPHA", "ONE")
-    pixels[j, i] = front
+    window = pixels[patch.rows, patch.columns]
+    for first in range(0, len(j), CHUNK):
+        down, across = j[first : first + CHUNK], i[first : first + CHUNK]
+        q = patch.q[down, across]
+        source = ball_source(q, right[across], up[down], shading, ball)
+        front = window[down, across]
+        blend_patch(front, source, "ONE_MINUS_DST_ALPHA", "ONE")
+        window[down, across] = front
     return True
 
 

@@ -6,7 +6,7 @@ framebuffer is read back over its projection: the mean is the light that reaches
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -41,7 +41,7 @@ BORDER = 1.02  # room around the cloud in the sun's buffer, as a factor
 @checked
 def sunward(
     balls: Metaballs,
-    suns: Sequence[Sun],
+    suns: tuple[Sun, ...],
     *,
     medium: Medium,
     look: Look | LookName = "cumulus",

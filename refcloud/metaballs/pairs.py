@@ -28,6 +28,8 @@ EQUAL_EDGES = 1e-6
 STENCIL_STEP = 1.1
 # Pairs of voxel and ball take about 100 bytes each: 1.6 GB, the most a fit may use.
 MOST_PAIRS = 1 << 24
+# Cells of the box that the balls reach over: 270 MB of float64.
+MOST_CELLS = 1 << 25
 # Entries of a stencil times balls that are listed at a time: 8 MB for each temporary.
 BLOCK = 1 << 20
 
@@ -193,6 +195,12 @@ def _box(
     low = np.floor((centers - reach) / work.edges).min(axis=0)
     high = np.ceil((centers + reach) / work.edges).max(axis=0) + 1
     low, high = np.minimum(low, 0.0), np.maximum(high, cells)
+    count = float(np.prod(high - low))
+    if not count <= MOST_CELLS:
+        raise ValueError(
+            f"grid: expected balls that reach over a box of at most {MOST_CELLS} cells,"
+            f" got {count:.3g}; ask for more balls or larger voxels"
+        )
     width, height, length = (int(n) for n in high - low)
     target = np.zeros((length, height, width))
     x, y, z = (int(-n) for n in low)

@@ -155,7 +155,7 @@ def _choice(bits: Bits, count: int) -> NDArray[np.intp]:
 
 
 def _chosen(bits: Bits, count: int) -> Bits:
-    upper = bits >> 16
+    upper: Bits = bits >> np.uint32(16)
     upper *= np.uint32(count)
-    upper >>= 16
+    upper >>= np.uint32(16)
     return upper

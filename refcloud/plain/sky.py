@@ -9,7 +9,6 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from refcloud.conventions import WHOLE_SPHERE
 from refcloud.plain.camera import Camera, Point, dot, rays
 from refcloud.plain.optics import henyey_greenstein
 
@@ -48,10 +47,9 @@ def clear_sky(
     for toward, irradiance in suns:
         if max(irradiance) > 0.0:
             cos_theta = max(min(dot(direction, toward), 1.0), -1.0)
-            lobe = WHOLE_SPHERE * henyey_greenstein(cos_theta, sky.glow_g)
+            lobe = henyey_greenstein(cos_theta, sky.glow_g)
             for channel in range(3):
-                hue = irradiance[channel] / max(irradiance)
-                color[channel] += sky.glow * lobe * hue
+                color[channel] += sky.glow * lobe * irradiance[channel]
     return color
 
 

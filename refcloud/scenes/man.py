@@ -43,7 +43,7 @@ EVENING = Sky(
     zenith=np.array([0.02, 0.075, 0.26]),
     horizon=np.array([0.15, 0.29, 0.54]),
     haze=np.array([0.42, 0.52, 0.66]),
-    glow=0.004,
+    glow=0.008,
 )
 ISOTROPIC = Medium(1.0, ALBEDO_MAN2003, phase="isotropic")
 FORWARD = Medium(1.0, ALBEDO_MAN2003, g=0.5, phase="hg")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import Annotated
 
@@ -30,7 +29,7 @@ class Sky:
     haze_height
         Sine of elevation over which the haze falls to 1/e.
     glow
-        Strength of the light around each sun; 0 is off.
+        Share of each sun's light that the air scatters; 0 is off.
     glow_g
         How narrow it is: mean cosine of its Henyey-Greenstein lobe.
     """
@@ -40,7 +39,7 @@ class Sky:
     haze: Colour = field(default_factory=lambda: np.array([0.58, 0.70, 0.83]))
     bend: Annotated[float, Positive] = 0.62
     haze_height: Annotated[float, Positive] = 0.075
-    glow: Annotated[float, Range(0.0, unit="radiance")] = 0.0
+    glow: Annotated[float, Range(0.0)] = 0.0
     glow_g: Annotated[float, Range(0.0, 1.0, open_upper=True)] = 0.9
 
     def __post_init__(self) -> None:
@@ -55,7 +54,7 @@ def clear_sky(
 
     Formula: t = y^bend, mix(horizon, zenith, t), then mixed to haze by
     exp(-y / haze_height), with y the sine of elevation, at least 0; each sun adds
-    glow 4 pi HG(angle to it, glow_g) times its colour
+    glow HG(angle to it, glow_g) times its irradiance
 
     Parameters
     ----------
@@ -86,12 +85,11 @@ def clear_sky(
     low = np.exp(-y / sky.haze_height)[..., None]
     color = color * (1.0 - low) + sky.haze * low
     for sun in suns if sky.glow > 0.0 else ():
-        peak = float(sun.irradiance.max())
-        if peak == 0.0:
+        if not sun.irradiance.any():
             continue
         toward = np.clip(directions @ sun.direction, -1.0, 1.0)
-        lobe = 4.0 * math.pi * henyey_greenstein(toward, sky.glow_g)
-        color += sky.glow * lobe[..., None] * (sun.irradiance / peak)
+        lobe = henyey_greenstein(toward, sky.glow_g)
+        color += sky.glow * lobe[..., None] * sun.irradiance
     return color
 
 

@@ -175,3 +175,11 @@ def test_other_codes_are_refused(tmp_path: Path, codes, error) -> None:
     with pytest.raises(error, match="codes: expected codes of uint8"):
         write_png(tmp_path / "a.png", codes)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_second_header_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "two.png"
+    data = made(3, 3)
+    end = len(SIGNATURE) + 25  # the first chunk: 13 bytes in 12 of frame
+    path.write_bytes(data[:end] + data[len(SIGNATURE) : end] + data[end:])
+    assert "two headers" in refusal(path)

@@ -23,10 +23,18 @@ from small_scenes import (
 from twins.lighting import clouds, looks, media, scattered_balls, seeds, suns_of
 
 from refcloud.camera import Camera, OrthographicCamera, project
-from refcloud.lighting import Haze, Look, ball_colours, eyeward, sunward
+from refcloud.lighting import (
+    Haze,
+    Look,
+    ball_colours,
+    eyeward,
+    light_field,
+    sunward,
+)
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.raster import transmittance
+from refcloud.sky import Sky, clear_sky
 
 ADDED = 1e-12  # of the brightest, for sums of a few dozen terms in another order
 every_look = pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS)
@@ -367,3 +375,20 @@ def test_a_background_of_another_size_is_refused() -> None:
 def test_refusals_name_the_field_in_one_line(make, name: str) -> None:
     with pytest.raises(ValueError, match=rf"^{name}: expected [^\n]*$"):
         make()
+
+
+def test_radii_below_every_scale_end_in_an_answer() -> None:
+    balls = Metaballs([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [5e-324, 5e-324], [1.0, 1.0])
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        field = light_field(balls, np.ones((2, 1)))
+    assert np.isfinite(field.sums).all()
+
+
+def test_two_half_suns_glow_as_one() -> None:
+    sky = Sky(glow=0.5)
+    camera = Camera(np.zeros(3), np.array([0.0, 0.2, -1.0]), width=12, height=9)
+    whole = Sun(np.array([0.1, 0.3, -1.0]))
+    half = Sun(whole.direction, 0.5 * whole.irradiance)
+    one = clear_sky(camera, sky, suns=(whole,))
+    two = clear_sky(camera, sky, suns=(half, half))
+    np.testing.assert_allclose(two, one, rtol=1e-14)

@@ -260,3 +260,11 @@ def test_prune_drops_beads_and_says_so():
     few = Metaballs(spots[-1:], [1.0], [1.0])
     assert prune(few) is few
     assert len(prune(balls, reach=100.0)) == 10
+
+
+def test_balls_over_too_many_cells_are_refused_before_memory_is_taken() -> None:
+    density = np.zeros((1, 1, 20_000))
+    density[0, 0, :50] = density[0, 0, -1] = 1.0
+    thin = VoxelGrid(density, np.zeros(3), np.array([20_000.0, 1.0, 1.0]))
+    with pytest.raises(ValueError, match="expected balls that"):
+        approximate(thin, count=1, overlap=2.2)
