@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,14 +12,12 @@ import numpy as np
 
 from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
-from refcloud.conventions import Array, Skipped
+from refcloud.conventions import Array, Observer, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Haze, Look, eyeward, sunward
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
-
-Observer = Callable[[str, Any], None]
 
 
 @dataclass(frozen=True)

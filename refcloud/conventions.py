@@ -38,6 +38,7 @@ Arguments
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -45,6 +46,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Observer = Callable[[str, Any], Any]  # called with a name and each intermediate
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -13,9 +12,11 @@ from refcloud.checking import checked, complaint
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import (
+    MOST_PIXELS,
     WHOLE_SPHERE,
     Array,
     Colour,
+    Observer,
     Range,
     Seed,
     Shape,
@@ -30,8 +31,7 @@ from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
 from refcloud.scene import View, find_scene
 from refcloud.sky import Sky
 
-Observer = Callable[[str, Any], None]
-Side = Annotated[int, Range(1, 64_000_000, "pixels")]
+Side = Annotated[int, Range(1, MOST_PIXELS, "pixels")]
 Quality = Literal["quick", "final"]
 
 # Width and height where the caller names none.

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
-from refcloud.conventions import Skipped
+from refcloud.conventions import Observer, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Look
 from refcloud.lighting.look import LookName
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
-
-Observer = Callable[[str, Any], None]
 
 
 @dataclass(frozen=True)

@@ -311,7 +311,7 @@ class Fields:
 
 
 def test_fields_are_checked_and_converted() -> None:
-    fields = Fields([[1, 2, 3]], [4])  # type: ignore[arg-type]
+    fields = Fields([[1, 2, 3]], [4])
     assert fields.points.dtype == np.float64
     assert not fields.weights.flags.writeable
 

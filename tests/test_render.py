@@ -158,8 +158,9 @@ def test_no_sun_is_another_picture_than_the_default_one() -> None:
 def test_every_intermediate_can_be_watched() -> None:
     seen: list[str] = []
     render(BALLS, observe=lambda name, value: seen.append(name), **HOW)
-    lights = ["light order", "light buffer"] * 4  # two suns, above, below
-    assert seen == [*lights, "detail", "eye order"]
+    lights = ("sun 0", "sun 1", "sky", "ground")
+    each = [f"{light} {what}" for light in lights for what in ("order", "buffer")]
+    assert seen == [*each, "detail", "eye order"]
 
 
 def test_skipped_rows_reach_the_picture() -> None:
@@ -231,9 +232,9 @@ def test_an_unknown_scene_is_refused_with_all_names() -> None:
         ),
         (lambda: render(BALLS, background=[-1, 0, 0], **HOW), "background: expected"),
         (lambda: render(BALLS, background="stars", **HOW), "background: expected"),
-        (lambda: render(BALLS, look="foam"), "look: expected a Look or one of"),  # type: ignore[arg-type]
+        (lambda: render(BALLS, look="foam"), "look: expected a Look or one of"),
         (lambda: render(BALLS, tolerance=2.0), "tolerance: expected"),
-        (lambda: render(BALLS, quality="best"), "quality: expected"),  # type: ignore[arg-type]
+        (lambda: render(BALLS, quality="best"), "quality: expected"),
     ],
 )
 def test_refusals_name_the_argument_in_one_line(call, message: str) -> None:
@@ -243,7 +244,7 @@ def test_refusals_name_the_argument_in_one_line(call, message: str) -> None:
 
 def test_what_is_no_cloud_is_refused() -> None:
     with pytest.raises(TypeError, match=r"^cloud: expected [^\n]*$"):
-        render(3.0)  # type: ignore[arg-type]
+        render(3.0)
 
 
 def test_a_camera_far_off_sees_only_the_background() -> None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -13,11 +12,10 @@ from refcloud.cloudmap.connected import largest_part
 from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
 from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
 from refcloud.cloudmap.voxels import MOST_VOXELS, VoxelGrid
-from refcloud.conventions import Array, Range, Seed, Shape, Skipped
+from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped
 from refcloud.noise import octave_bound, octave_sum_grid, uniform
 from refcloud.noise.weights import PEAKS
 
-Observer = Callable[[str, Any], None]
 # Lengths whose squares and inverse squares stay finite numbers.
 SIZE = Range(1e-100, 1e100, "scene units")
 Length = Annotated[float, SIZE]

@@ -9,14 +9,13 @@ behind an opaque front need not be drawn.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
 from refcloud.camera import AnyCamera, axes, project
 from refcloud.checking import checked
-from refcloud.conventions import Array, Range, Seed, Shape, Skipped, Tolerance
+from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
 from refcloud.lighting.colours import Haze, ball_colours, clearness
 from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.erosion import detail_grid
@@ -27,7 +26,6 @@ from refcloud.lighting.order import depth_order
 from refcloud.lighting.shading import Ball, Shading, draw_over, draw_under
 from refcloud.raster.blending import blend_patch
 
-Observer = Callable[[str, Any], None]
 RISE = 0.25  # of the noise's coarsest cell: the step toward a sun that shows its relief
 
 

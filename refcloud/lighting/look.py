@@ -10,8 +10,8 @@ import numpy as np
 from refcloud.checking import check_fields
 from refcloud.conventions import WHOLE_SPHERE, Array, Colour, Range
 from refcloud.optics import TAU_MAN2003
+from refcloud.optics.media import Share
 
-Share = Annotated[float, Range(0.0, 1.0)]
 Side = Annotated[int, Range(1, 4096, "pixels")]
 LookName = Literal["cumulus", "man"]
 

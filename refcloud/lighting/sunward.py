@@ -7,13 +7,12 @@ framebuffer is read back over its projection: the mean is the light that reaches
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from refcloud.camera import OrthographicCamera, project
 from refcloud.checking import checked
-from refcloud.conventions import Array
+from refcloud.conventions import Array, Observer
 from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import Look, LookName, named
@@ -33,7 +32,6 @@ from refcloud.raster.blending import blend_patch
 from refcloud.raster.footprint import footprint_of, opacity_of, patch_of
 from refcloud.raster.splat import mean_of
 
-Observer = Callable[[str, Any], None]
 FROM_ABOVE = np.array([0.0, 1.0, 0.0])
 BORDER = 1.02  # room around the cloud in the sun's buffer, as a factor
 
@@ -63,7 +61,9 @@ def sunward(
     look
         The rules, or their name.
     observe
-        Called with (name, value): each light's order and framebuffer.
+        Called with (name, value): order and framebuffer of each light, as "sun 0
+        order", "sun 0 buffer", ..., "sky ...", "ground ..."; of a coloured medium once
+        for each channel.
 
     Returns
     -------
@@ -80,16 +80,22 @@ def sunward(
     watch = observe or (lambda name, value: None)
     count = len(balls.radii)
     light = np.zeros((len(suns), count, 3))
-    for sun, reached in zip(suns, light, strict=True):
+    for number, sun in enumerate(suns):
         if sun.irradiance.any():
             share = light_share(
-                balls, sun.direction, medium, rules, rules.forward, rules.buffer, watch
+                balls,
+                sun.direction,
+                medium,
+                rules,
+                rules.forward,
+                rules.buffer,
+                _labelled(watch, f"sun {number}"),
             )
-            reached[:] = share * sun.irradiance
+            light[number] = share * sun.irradiance
     ambient = np.zeros((count, 3))
-    for direction, color in (
-        (FROM_ABOVE, rules.sky_light),
-        (-FROM_ABOVE, rules.ground_light),
+    for name, direction, color in (
+        ("sky", FROM_ABOVE, rules.sky_light),
+        ("ground", -FROM_ABOVE, rules.ground_light),
     ):
         if color.any():
             share = light_share(
@@ -99,10 +105,15 @@ def sunward(
                 rules,
                 rules.sky_forward,
                 rules.sky_buffer,
-                watch,
+                _labelled(watch, name),
             )
             ambient += share * color
     return LitMetaballs(balls, tuple(suns), light, ambient, medium, rules)
+
+
+def _labelled(watch: Observer, light: str) -> Observer:
+    """Let what is watched say which light it is of."""
+    return lambda name, value: watch(f"{light} {name}", value)
 
 
 def light_share(
@@ -237,7 +248,7 @@ def _carry(
     x, y, depth, scale = project(camera, centers)
     buffer = framebuffer(side, side, color=np.ones(4))
     order = depth_order(balls, depth)
-    watch("light order", order)
+    watch("order", order)
     for k in order:
         radius = float(balls.radii[k] * scale[k])
         place = float(x[k]), float(y[k]), radius
@@ -259,5 +270,5 @@ def _carry(
             source[..., :3] = (scatter(weight * tau[k]) * light)[..., None]
         source[..., 3] = opacity_of(weight, float(tau[k]), look.transmittance)
         blend_patch(buffer.pixels[patch.rows, patch.columns], source)
-    watch("light buffer", buffer)
+    watch("buffer", buffer)
     return reached

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from refcloud.checking import checked
 from refcloud.cloudmap.voxels import VoxelGrid
-from refcloud.conventions import Array, Range, Seed, Skipped
+from refcloud.conventions import Array, Observer, Range, Seed, Skipped
 from refcloud.metaballs.balls import Metaballs
 from refcloud.metaballs.heights import descend, dot
 from refcloud.metaballs.kernels import Kernel
@@ -19,8 +18,6 @@ from refcloud.metaballs.pairs import Pairs, Work, list_pairs, prepare
 from refcloud.metaballs.refine import Fit, refine
 from refcloud.metaballs.spread import rms_radii
 from refcloud.metaballs.weights import voxel_weights
-
-Observe = Callable[[str, Any], Any]
 
 # R over sigma: 2 is the paper's figure 8; 2.2 gives the least error on all voxels.
 PAPER_OVERLAP, OVERLAP = 2.0, 2.2
@@ -46,7 +43,7 @@ def approximate(
     rounds: Annotated[int, Range(0, 10_000)] = 10,
     refine_steps: Annotated[int, Range(0, 10_000)] = 5,
     least_radius: Annotated[float, Range(0.0, 1e4, "voxel", open_lower=True)] = 1.1,
-    observe: Observe | None = None,
+    observe: Observer | None = None,
 ) -> Metaballs:
     """Approximate a cloud map by metaballs.
 

@@ -369,7 +369,7 @@ def test_a_background_of_another_size_is_refused() -> None:
         (lambda: Look(erosion=1.0), "erosion"),
         (lambda: Look(buffer=0), "buffer"),
         (lambda: Look(tau=1e38), "tau"),
-        (lambda: Look(readback="round"), "readback"),  # type: ignore[arg-type]
+        (lambda: Look(readback="round"), "readback"),
     ],
 )
 def test_refusals_name_the_field_in_one_line(make, name: str) -> None:

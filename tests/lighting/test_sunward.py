@@ -161,7 +161,7 @@ def test_balls_at_one_depth_have_one_order() -> None:
         mixed, seen = listed_as(balls, order), {}
         sun = (Sun([0, 1, 0]),)
         sunward(mixed, sun, medium=MEDIUM, look=PAPER, observe=seen.__setitem__)
-        orders.append(mixed.centers[seen["light order"]].tolist())
+        orders.append(mixed.centers[seen["sun 0 order"]].tolist())
     assert orders[0] == orders[1]
 
 
@@ -177,7 +177,7 @@ def test_e26_balls_are_lit_from_the_nearest_on() -> None:
         observe=lambda name, value: seen.append((name, value)),
     )
     (name, order), (last, buffer) = seen
-    assert (name, last) == ("light order", "light buffer")
+    assert (name, last) == ("sun 0 order", "sun 0 buffer")
     toward = BALLS.centers[order] @ sun.direction
     assert (np.diff(toward) <= 0.0).all()
     assert buffer.pixels.shape == (16, 16, 4)

@@ -169,4 +169,4 @@ def test_a_wrong_box_is_refused(rows, columns, shape, message) -> None:
 def test_a_wrong_name_is_refused(name: str) -> None:
     box = slice(0, 1), slice(0, 1)
     with pytest.raises(ValueError, match=f"src_factor.*got {name!r}"):
-        blend(framebuffer(1, 1), *box, np.zeros((1, 1, 4)), name, "ONE")  # type: ignore[arg-type]
+        blend(framebuffer(1, 1), *box, np.zeros((1, 1, 4)), name, "ONE")

@@ -161,7 +161,7 @@ def test_e25_largest_gap_of_the_two_laws(tau, largest, digits) -> None:
 @pytest.mark.parametrize("tau", [-1.0, math.nan, math.inf])
 def test_a_wrong_depth_is_refused(tau: float) -> None:
     with pytest.raises(ValueError, match="tau: expected a finite number in"):
-        transmittance([0.5], tau)  # type: ignore[arg-type]
+        transmittance([0.5], tau)
 
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, math.nan, math.inf])

@@ -93,4 +93,4 @@ def test_a_buffer_too_large_is_refused_before_memory_is_taken() -> None:
 @pytest.mark.parametrize("color", [[0, 0, 0], [0, 0, 0, np.nan], [0, 0, 0, np.inf]])
 def test_a_wrong_colour_is_refused(color: list[float]) -> None:
     with pytest.raises(ValueError, match="color: expected"):
-        clear(framebuffer(1, 1), color)  # type: ignore[arg-type]
+        clear(framebuffer(1, 1), color)

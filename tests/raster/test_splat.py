@@ -271,7 +271,7 @@ def test_disc_and_square_and_footprint_are_different_means() -> None:
 
 def test_emission_below_zero_is_refused() -> None:
     with pytest.raises(ValueError, match="emission: expected numbers in"):
-        splat(framebuffer(1, 1), 0, 0, 1, emission=[-1, 0, 0], tau=1)  # type: ignore[arg-type]
+        splat(framebuffer(1, 1), 0, 0, 1, emission=[-1, 0, 0], tau=1)
 
 
 def test_patch_and_splat_agree_on_what_is_touched() -> None:

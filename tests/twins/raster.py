@@ -36,7 +36,7 @@ def _filled(draw: Draw, elements: st.SearchStrategy[float]) -> raster.Framebuffe
 @twin(raster.framebuffer, plain.framebuffer, tolerance=0, why="no arithmetic")
 def framebuffer(draw: Draw):
     width, height, color = draw(SIDE), draw(SIDE), draw(COLOUR)
-    buffer = raster.framebuffer(width, height, color=color)  # type: ignore[arg-type]
+    buffer = raster.framebuffer(width, height, color=color)
     return buffer.pixels, plain.framebuffer(width, height, color)
 
 
@@ -44,7 +44,7 @@ def framebuffer(draw: Draw):
 def clear(draw: Draw):
     buffer, color = _filled(draw, CHANNEL), draw(COLOUR)
     expected = buffer.pixels.tolist()
-    raster.clear(buffer, color)  # type: ignore[arg-type]
+    raster.clear(buffer, color)
     plain.clear(expected, color)
     return buffer.pixels, expected
 
