@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-import json as json_format
+import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from refcloud import bench
 from refcloud.cli.options import options_of
@@ -13,32 +14,31 @@ from refcloud.cli.parser import Command
 from refcloud.refusal import complaint
 
 ABOUT = "Measure run time against error, beside other libraries where installed."
-SUBJECTS = ("noise",)
 
 
-def measure(*, quick: bool = False, json: bool = False) -> str:
-    """Measure every contender, interleaved, in CPU time.
+@dataclass(frozen=True)
+class Measurement:
+    """How to measure, and how to print it.
 
-    Parameters
+    Attributes
     ----------
     quick
         Small arrays and few rounds, for a look at the table.
     json
         Rows for machines instead of a table.
     """
-    rows = bench.run(quick)
-    if json:
-        return json_format.dumps([dataclasses.asdict(row) for row in rows], indent=1)
-    return bench.table(rows)
+
+    quick: bool = False
+    json: bool = False
 
 
-OPTIONS = options_of(measure)
+OPTIONS = options_of(Measurement)
 
 
 def command() -> Command:
     """Give the command's argument and options."""
     made = Command("bench", ABOUT)
-    made.argument("WHAT", "what is measured: " + ", ".join(SUBJECTS))
+    made.argument("WHAT", "what is measured: " + ", ".join(bench.SUBJECTS))
     made.group("the measurement", "", OPTIONS)
     return made
 
@@ -46,9 +46,14 @@ def command() -> Command:
 def run(words: Sequence[str]) -> int:
     """Measure, and print the rows."""
     given = command().parse(words)
-    (subject,) = given.arguments
-    if subject not in SUBJECTS:
-        expected = "one of " + ", ".join(SUBJECTS)
-        raise ValueError(complaint("WHAT", expected, repr(subject)))
-    say(measure(**given.of(OPTIONS)))
+    (name,) = given.arguments
+    if name not in bench.SUBJECTS:
+        expected = "one of " + ", ".join(bench.SUBJECTS)
+        raise ValueError(complaint("WHAT", expected, repr(name)))
+    subject, how = bench.SUBJECTS[name], Measurement(**given.of(OPTIONS))
+    rows = bench.run(subject, how.quick)
+    if how.json:
+        say(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))
+    else:
+        say(bench.table(subject, rows))
     return 0

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import refcloud as rc
-from refcloud.cli.bench import measure
+from refcloud.cli.bench import Measurement
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
 from refcloud.conventions import Range
@@ -37,7 +37,7 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     ],
     "list": [],
     "noise": [(noise_picture, {"kind"})],
-    "bench": [(measure, set())],
+    "bench": [(Measurement, set())],
 }
 RENAMED = {"direction": "sun"}
 OWN_DEFAULTS = {("render", "tolerance"): "1/255"}
