@@ -17,8 +17,9 @@ from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
 from refcloud.noise.hashing import _hash, _words, uniform
 from refcloud.noise.lattice import _reduced
 from refcloud.noise.scattered import _scattered
-from refcloud.noise.value import How, Points, _value
+from refcloud.noise.value import Points, _value
 from refcloud.noise.value_grid import Axes, _add_grid
+from refcloud.noise.value_table import How
 from refcloud.noise.weights import PEAKS, Interpolant
 
 Normalize = Literal["clip", "bound", "none"]

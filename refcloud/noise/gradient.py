@@ -31,7 +31,8 @@ from refcloud.noise.scattered import (
     Numbers,
     Places,
     _dimensions,
-    _floored,
+    _places,
+    _Room,
     _scattered,
     _split,
 )
@@ -98,9 +99,13 @@ def gradient(
     """
     name = _named(gradients, _dimensions(points, (2, 3)))
     how = How(seed, fade, name, period, hash, dtype)
-    box = _pair_box(points, how.lattice())
+    box, room = _pair_box(points, how.lattice()), _Room()
     return _scattered(
-        points, lambda axes: _gradient(axes, how, box), dtype, period, inside=bool(box)
+        points,
+        lambda axes: _gradient(axes, how, box, room),
+        dtype,
+        period,
+        inside=bool(box),
     )
 
 
@@ -189,11 +194,17 @@ def _literal(points: Array, seed: int, fade: Fade, name: Gradients) -> Array:
     return total / PEAKS[name][fade]
 
 
-def _gradient(columns: Array, how: How, box: PairBox | None = None) -> Numbers:
-    """Give gradient noise at finite points, coordinates in rows, shape (N, n)."""
-    cells, places = _floored(columns, how.dtype)
+def _gradient(
+    columns: Array, how: How, box: PairBox | None = None, room: _Room | None = None
+) -> Numbers:
+    """Give gradient noise at finite points, coordinates in rows, shape (N, n).
+
+    The next call with the same room overwrites the result.
+    """
+    cells = np.floor(columns)
     pairs = _hashed_pairs(cells, how.lattice()) if box is None else box.at(cells)
-    return _paired(places, FADES[how.fade](places), pairs, how.rows())
+    places = _places(columns, cells, how.dtype)
+    return _paired(places, FADES[how.fade](places), pairs, how.rows(), room or _Room())
 
 
 def _derivative(columns: Array, how: How) -> list[Numbers]:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.noise.mixing import Bits, Hash, _axis_bits, _chosen, _joined
-from refcloud.noise.scattered import Numbers, _bounds, _index
+from refcloud.noise.scattered import Numbers, _bounds, _index, _Room
 
 MOST_LATTICE = 1 << 21  # bytes of a box: beyond, the cache misses cost what it saves
 WORTH = 2  # lattice points hashed for a box take less time than one point's corners
@@ -148,43 +148,60 @@ def _pair_table(rows: bytes, count: int, dtype: str) -> Numbers:
     return table
 
 
-def _paired(places: Numbers, fades: Numbers, pairs: Pairs, rows: Array) -> Numbers:
-    """Blend the corners' gradients times the offsets from them, places (N, n)."""
-    n = places.shape[1]
-    table = _pair_table(rows.tobytes(), rows.shape[1], places.dtype.str)
+def _paired(
+    places: Numbers, fades: Numbers, pairs: Pairs, rows: Array, room: _Room
+) -> Numbers:
+    """Blend the corners' gradients times the offsets from them, places (N, n).
+
+    The next call with the same room overwrites the result.
+    """
+    n, dtype = places.shape[1], places.dtype
+    table = _pair_table(rows.tobytes(), rows.shape[1], dtype.str)
     # Both ends of x lie side by side; along the other axes they have the same offset.
-    offset, fade = _side_by_side(places), _side_by_side(fades[1:])
+    offset = _side_by_side(places, room.take("offset", (*places.shape, 2), dtype))
+    fade = _side_by_side(fades[1:], room.take("fade", (len(table) - 1, n, 2), dtype))
     offset[0, 1::2] -= 1.0
-    total = np.empty((*pairs.shape[:-1], 2 * n), places.dtype)
-    slope = np.empty_like(total)
-    for axis, both in enumerate(table):
-        into = slope if axis else total
-        np.take(both, pairs, axis=0, out=into.reshape(*pairs.shape, 2), mode="clip")
-        if axis == 0:
-            total *= offset[0]
-            continue
-        low, high = np.moveaxis(slope, axis - 1, 0)
-        low *= offset[axis]
-        offset[axis] -= 1.0
-        high *= offset[axis]
-        total += slope
-    # Blend the two ends of one axis after another.
-    for axis in range(len(table) - 1, 0, -1):
-        low, change = total[..., 0, :], total[..., 1, :]
-        change -= low
-        change *= fade[axis - 1]
-        change += low
-        total = change
-    low, change = total[0::2], total[1::2]
-    change -= low
-    change *= fades[0]
-    change += low
-    return change
+    beyond = np.subtract(
+        offset[1:], 1.0, out=room.take("beyond", fade.shape, dtype)
+    )  # from the other ends
+    # One end along y after the other, each with both ends along z where there are.
+    pairs = pairs.reshape(2, -1, n)
+    total = room.take("total", (*pairs.shape[:2], 2 * n), dtype)
+    slope = room.take("slope", total.shape[1:], dtype)
+    for both, pair, along_y in zip(total, pairs, (offset[1], beyond[0]), strict=True):
+        _look_up(table[0], pair, both)
+        both *= offset[0]
+        _look_up(table[1], pair, slope)
+        slope *= along_y
+        both += slope
+        if len(table) == 3:
+            _look_up(table[2], pair, slope)
+            slope[0] *= offset[2]
+            slope[1] *= beyond[1]
+            both += slope
+            _blend(both[0], both[1], fade[1])
+    # What was blended along z stands where its upper end was.
+    low, high = total[:, -1]
+    _blend(low, high, fade[0])
+    return _blend(high[0::2], high[1::2], fades[0])
 
 
-def _side_by_side(rows: Numbers) -> Numbers:
+def _look_up(both: Numbers, pair: Pairs, out: Numbers) -> None:
+    """Write the two numbers of every pair side by side, (..., n) to (..., 2n)."""
+    into = out.reshape(*pair.shape, 2)
+    np.take(both, pair, axis=0, out=into, mode="wrap")
+
+
+def _blend(low: Numbers, high: Numbers, fade: Numbers) -> Numbers:
+    """Go from low to high as far as the fade says, in place of high."""
+    high -= low
+    high *= fade
+    high += low
+    return high
+
+
+def _side_by_side(rows: Numbers, out: Numbers) -> Numbers:
     """Write every number twice, (N, n) to (N, 2n)."""
-    twice = np.empty((*rows.shape, 2), rows.dtype)
-    twice[..., 0] = rows
-    twice[..., 1] = rows
-    return twice.reshape(len(rows), -1)
+    out[..., 0] = rows
+    out[..., 1] = rows
+    return out.reshape(len(rows), -1)

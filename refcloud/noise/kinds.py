@@ -20,9 +20,9 @@ from refcloud.noise.gradient_grid import _fill
 from refcloud.noise.scattered import PERIOD, Dtype, Numbers
 from refcloud.noise.simplex import WRAP, _simplex
 from refcloud.noise.simplex_grid import simplex_grid
-from refcloud.noise.value import How as ValueHow
 from refcloud.noise.value import _value
 from refcloud.noise.value_grid import _add_grid
+from refcloud.noise.value_table import How as ValueHow
 
 KindName = Literal["value", "gradient", "simplex"]
 Lines = list[Array]  # the coordinates along each axis of a grid

@@ -19,6 +19,24 @@ CHUNK = 1 << 14  # points at a time: their corners stay in the cache
 PERIOD = 2.0**32  # lattice coordinates wrap here, for every hash
 
 
+class _Room:
+    """Arrays that chunk after chunk is worked out in.
+
+    Memory that is fresh for each chunk costs as much as the work: the system clears
+    its pages.
+    """
+
+    def __init__(self) -> None:
+        self.arrays: dict[str, Numbers] = {}
+
+    def take(self, name: str, shape: tuple[int, ...], dtype: Any) -> Numbers:
+        """Give the array of that name, its numbers as they were left."""
+        array = self.arrays.get(name)
+        if array is None or array.shape != shape or array.dtype != dtype:
+            array = self.arrays[name] = np.empty(shape, dtype)
+        return array
+
+
 def _dimensions(points: Array, allowed: tuple[int, ...]) -> int:
     """Give how many coordinates a place has, refused where the noise has no such."""
     count = points.shape[-1]
@@ -93,13 +111,12 @@ def _split(
     return floor.astype(np.int64), (reduced - floor).astype(dtype, copy=False)
 
 
-def _floored(columns: Array, dtype: Dtype) -> tuple[Array, Numbers]:
-    """Split coordinates (N, n) into cells, still floats, and places in rows.
+def _places(columns: Array, cells: Array, dtype: Dtype) -> Numbers:
+    """Give the places of coordinates (N, n) in their cells, which are overwritten.
 
     Passes follow the memory of the coordinates; rounding the places lays them in rows.
     """
-    cells = np.floor(columns)
-    return cells, (columns - cells).astype(dtype, order="C", copy=False)
+    return np.subtract(columns, cells, out=cells).astype(dtype, order="C", copy=False)
 
 
 def _index(cells: Array, low: list[int], steps: NDArray[np.int64]) -> NDArray[np.intp]:

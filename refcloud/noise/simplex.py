@@ -21,6 +21,7 @@ from refcloud.noise.scattered import (
     Numbers,
     Places,
     _dimensions,
+    _Room,
     _scattered,
 )
 from refcloud.noise.simplex_corners import (
@@ -30,7 +31,6 @@ from refcloud.noise.simplex_corners import (
     _broadcast,
     _corners,
     _dotted,
-    _Room,
     _skews,
 )
 

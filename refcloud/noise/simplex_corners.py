@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
 from refcloud.conventions import Array
 from refcloud.noise.directions import SETS, USUAL, Radius
 from refcloud.noise.mixing import Bits, Hash, _axis_bits, _choice, _joined
-from refcloud.noise.scattered import Dtype, Numbers
+from refcloud.noise.scattered import Dtype, Numbers, _Room
 
 # A chunk's cells share their hashed lines where an axis has fewer: 16 KiB of them.
 MOST_LINES = 1 << 12
@@ -33,24 +32,6 @@ PEAKS: dict[tuple[int, Radius], float] = {
     (4, "continuous"): 0.016410,
     (4, "usual"): 0.037830,
 }
-
-
-class _Room:
-    """Arrays that chunk after chunk is worked out in.
-
-    Memory that is fresh for each chunk costs as much as the work: the system clears
-    its pages.
-    """
-
-    def __init__(self) -> None:
-        self.arrays: dict[str, Numbers] = {}
-
-    def take(self, name: str, shape: tuple[int, ...], dtype: Any) -> Numbers:
-        """Give the array of that name, its numbers as they were left."""
-        array = self.arrays.get(name)
-        if array is None or array.shape != shape or array.dtype != dtype:
-            array = self.arrays[name] = np.empty(shape, dtype)
-        return array
 
 
 def _skews(dimensions: int) -> tuple[float, float]:

@@ -13,9 +13,9 @@ from refcloud.checking import checked
 from refcloud.conventions import Array, Seed, Shape
 from refcloud.noise.directions import Radius
 from refcloud.noise.mixing import Hash
-from refcloud.noise.scattered import CHUNK, Dtype, Numbers
+from refcloud.noise.scattered import CHUNK, Dtype, Numbers, _Room
 from refcloud.noise.simplex import WRAP, _simplex
-from refcloud.noise.simplex_corners import PEAKS, _Room
+from refcloud.noise.simplex_corners import PEAKS
 from refcloud.noise.simplex_phases import _on_blocks, _regular
 from refcloud.refusal import complaint
 
