@@ -28,6 +28,9 @@ class _Room:
 
     def __init__(self) -> None:
         self.arrays: dict[str, Numbers] = {}
+        # Hashed lattice lines of each axis, and how each differs from the next.
+        self.lines: list[tuple[Array, Array]] = []
+        self.ends: tuple[Array, Array]
 
     def take(self, name: str, shape: tuple[int, ...], dtype: Any) -> Numbers:
         """Give the array of that name, its numbers as they were left."""

@@ -178,7 +178,8 @@ def _simplex(
     for d, slope, kernel in _corners(columns, seed, radius, hash, dtype, room):
         kernel *= kernel
         kernel *= kernel
-        total += np.multiply(_dotted(slope, d, part, products), kernel, out=part)
+        kernel *= _dotted(slope, d, part, products)
+        total += kernel
     return total
 
 
