@@ -207,4 +207,4 @@ def _quintic_weight(t: Array) -> Array:
     cube = t * t
     cube *= t
     cube *= weight
-    return np.minimum(cube, 1.0)
+    return np.minimum(cube, 1.0, out=cube if np.ndim(cube) else None)

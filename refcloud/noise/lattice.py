@@ -28,7 +28,7 @@ Cells = NDArray[np.int64]
 WEIGHTS = CENTRE, SIDE, EDGE, CORNER = (108, 8, 3, 3)  # EDGE equals CORNER
 DENOMINATOR = 216
 
-SLAB = 1 << 15  # values in one step over a block: its temporaries fit a core's cache
+SLAB = 1 << 16  # values in one step over a block: its temporaries fit a core's cache
 PERIOD = 2.0**32  # lattice coordinates wrap here, for every hash
 
 
@@ -142,17 +142,23 @@ def _block(
     columns = x.astype(np.uint64)
     rows = y.astype(np.uint64)[:, np.newaxis]
     layers = z.astype(np.uint64)[:, np.newaxis, np.newaxis]
-    g = np.empty((z.size, y.size, x.size), "float64" if smooth else dtype)
     planes = max(1, SLAB // (y.size * x.size))
-    for first in range(0, z.size, planes):
-        part = slice(first, first + planes)
-        g[part] = _lattice_random(columns, rows, layers[part], seed)
     if not smooth:
-        return g
+        f = np.empty((z.size, y.size, x.size), dtype)
+        for first in range(0, z.size, planes):
+            part = slice(first, first + planes)
+            f[part] = _lattice_random(columns, rows, layers[part], seed)
+        return f
     f = np.empty((z.size - 2, y.size - 2, x.size - 2), dtype)
-    planes *= 2  # every step hands two planes over to the next, and reads them again
-    for first in range(0, z.size - 2, planes):
-        f[first : first + planes] = _smoothed_inside(g[first : first + planes + 2])
+    # Some planes and their neighbours at a time; each step hands two on to the next.
+    g: Array = np.empty((min(planes, len(f)) + 2, y.size, x.size))
+    g[:2] = _lattice_random(columns, rows, layers[:2], seed)
+    for first in range(0, len(f), planes):
+        part = f[first : first + planes]
+        new = layers[first + 2 : first + 2 + len(part)]
+        g[2 : 2 + len(part)] = _lattice_random(columns, rows, new, seed)
+        part[...] = _smoothed_inside(g[: 2 + len(part)])
+        g[:2] = g[len(part) : len(part) + 2]
     return f
 
 
