@@ -17,7 +17,7 @@ from refcloud.noise.fractal import (
     octave_bound,
 )
 from refcloud.noise.gradient import Period
-from refcloud.noise.kinds import KINDS, KindName, _octave_columns
+from refcloud.noise.kinds import KINDS, KindName, Octave, _octave_columns
 from refcloud.noise.scattered import Dtype, Numbers
 
 
@@ -179,7 +179,7 @@ def _sum_grid(
     bound = octave_bound(octaves, persistence)
     kept = [i for i in range(octaves) if finest is None or 2.0**-i >= finest]
     scale = 1.0 / bound if normalize == "bound" else 1.0
-    total = np.zeros([line.size for line in lines[::-1]], dtype)
+    summed = []
     for i in kept:
         own, shift = _frame(i, len(lines), seed)
         repeat = None if period is None else period << i
@@ -188,8 +188,12 @@ def _sum_grid(
             _octave_columns(line[np.newaxis], i, shift[k], wrap)[0]
             for k, line in enumerate(lines)
         ]
-        weight = scale * persistence**i
-        KINDS[kind].add(total, weight, placed, own, repeat, absolute)
+        summed.append(Octave(scale * persistence**i, placed, own, repeat))
+    total = np.empty([line.size for line in lines[::-1]], dtype)
+    if summed:
+        KINDS[kind].fill(total, summed, absolute)
+    else:
+        total[...] = 0.0
     result = total.reshape(shape)
     if normalize == "clip":
         np.clip(result, -1.0, 1.0, out=result)
