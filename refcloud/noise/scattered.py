@@ -29,7 +29,7 @@ class _Room:
     def __init__(self) -> None:
         self.arrays: dict[str, Numbers] = {}
         # Hashed lattice lines of each axis, and how each differs from the next.
-        self.lines: list[tuple[Array, Array]] = []
+        self.lines: list[tuple[NDArray[Any], NDArray[Any]]] = []
         self.ends: tuple[Array, Array]
 
     def take(self, name: str, shape: tuple[int, ...], dtype: Any) -> Numbers:

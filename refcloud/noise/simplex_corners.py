@@ -207,7 +207,7 @@ def _broadcast(columns: Columns) -> tuple[int, ...]:
     return np.broadcast_shapes(*(column.shape for column in columns))
 
 
-def _sum(columns: Columns, out: Array) -> None:
+def _sum(columns: Columns | Bits, out: Numbers) -> None:
     """Add the axes' arrays, which broadcast."""
     np.add(columns[0], columns[1], out=out)
     for column in columns[2:]:
