@@ -8,6 +8,9 @@ the absolute value of the whole sum is paper M's, `octave_sum`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from refcloud.checking import checked
@@ -146,6 +149,23 @@ def turbulence(
     """
     how = (kind, time, seed, octaves, persistence, normalize, period, dtype)
     return _sum(points, *how, absolute=True)
+
+
+def _literal(
+    points: Array,
+    noise: Callable[..., Any],
+    seed: int,
+    octaves: int,
+    persistence: float,
+    absolute: bool,
+) -> Array:
+    """Give a sum of octaves of any noise(points, seed=...), as its formula says it."""
+    total: Array = np.zeros(points.shape[:-1])
+    for i in range(octaves):
+        own, shift = _frame(i, points.shape[-1], seed)
+        octave = noise(points * 2.0**i + shift, seed=own)
+        total += persistence**i * (np.abs(octave) if absolute else octave)
+    return total
 
 
 def _sum(

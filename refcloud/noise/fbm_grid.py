@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -154,6 +155,24 @@ def turbulence_grid(
     """
     how = (kind, time, seed, octaves, persistence, normalize, period, dtype, finest)
     return _sum_grid((x, y, z), *how, absolute=True)
+
+
+def _literal(
+    axes: list[Array],
+    grid: Callable[..., Any],
+    seed: int,
+    octaves: int,
+    persistence: float,
+    absolute: bool,
+) -> Array:
+    """Give a sum of octaves of any grid(x, ..., seed=...), as its formula says it."""
+    total: Array = np.zeros([axis.size for axis in axes[::-1]])
+    for i in range(octaves):
+        own, shift = _frame(i, len(axes), seed)
+        moved = [axis * 2.0**i + s for axis, s in zip(axes, shift, strict=True)]
+        octave = grid(*moved, seed=own)
+        total += persistence**i * (np.abs(octave) if absolute else octave)
+    return total
 
 
 def _sum_grid(

@@ -17,7 +17,7 @@ from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
 from refcloud.noise.hashing import _hash, _words, uniform
 from refcloud.noise.lattice import _reduced
 from refcloud.noise.scattered import _scattered
-from refcloud.noise.value import Points, _value
+from refcloud.noise.value import Points, _value, value
 from refcloud.noise.value_grid import Axes, _add_grid
 from refcloud.noise.value_table import How
 from refcloud.noise.weights import PEAKS, Interpolant
@@ -219,6 +219,22 @@ def octave_sum_grid(
         "noise",
     )
     return values, (row,)
+
+
+def _literal(
+    points: Array,
+    seed: int | None,
+    octaves: int,
+    persistence: float,
+    interpolant: Interpolant,
+) -> Array:
+    """Give the sum of eq 1 as it stands: |sum of s^i h(2^i p)|."""
+    total: Array = np.zeros(points.shape[:-1])
+    for i in range(octaves):
+        own, shift = octave_frame(i, seed=seed)
+        places = points * 2.0**i + shift
+        total += persistence**i * value(places, seed=own, interpolant=interpolant)
+    return np.abs(total)
 
 
 def _placed(axes: Axes, octave: int, shift: Array) -> Axes:

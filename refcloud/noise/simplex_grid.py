@@ -15,6 +15,7 @@ from refcloud.noise.directions import Radius
 from refcloud.noise.mixing import Hash
 from refcloud.noise.scattered import CHUNK, Dtype, Numbers, _Room
 from refcloud.noise.simplex import WRAP, _simplex
+from refcloud.noise.simplex import _literal as _pointwise
 from refcloud.noise.simplex_corners import PEAKS
 from refcloud.noise.simplex_phases import _on_blocks, _regular
 from refcloud.refusal import complaint
@@ -79,6 +80,12 @@ def simplex_grid(
         depth, height, width = shape
         return np.ascontiguousarray(whole[:depth, :height, :width])
     return _by_rows(axes, seed, radius, hash, dtype).reshape(shape)
+
+
+def _literal(axes: list[Array], seed: int, radius: Radius) -> Array:
+    """Give simplex noise of every place of a grid, as its formula says it."""
+    mesh = np.meshgrid(*axes[::-1], indexing="ij")
+    return _pointwise(np.stack(mesh[::-1], axis=-1), seed, radius)
 
 
 def _by_rows(

@@ -10,10 +10,11 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed, Shape
 from refcloud.noise.gradient import Period
-from refcloud.noise.lattice import SLAB, AxisTaps, Cells, _axis, _block
+from refcloud.noise.hashing import lattice_random
+from refcloud.noise.lattice import SLAB, AxisTaps, Cells, _axis, _block, smoothed
 from refcloud.noise.scattered import Dtype, Numbers, _wrapped
 from refcloud.noise.value_table import MOST_LATTICE, How
-from refcloud.noise.weights import Interpolant
+from refcloud.noise.weights import Interpolant, _taps
 
 Axes = tuple[Array, Array, Array]  # x, y and z
 
@@ -65,6 +66,27 @@ def value_grid(
     how = How(seed, interpolant, smooth, period, dtype)
     _add_grid(out, 1.0, (x, y, z), how)
     return out
+
+
+def _literal(
+    axes: Axes, seed: int | None, interpolant: Interpolant, smooth: bool
+) -> Array:
+    """Give value noise as one dense matrix of weights along each axis."""
+    matrices, lines = [], []
+    for axis in axes:
+        cells = np.floor(axis).astype(np.int64)
+        weights, offsets = _taps(interpolant, axis - cells)
+        line = np.unique(np.add.outer(offsets, cells))
+        dense: Array = np.zeros((axis.size, line.size))
+        for weight, offset in zip(weights, offsets, strict=True):
+            dense[np.arange(axis.size), np.searchsorted(line, cells + offset)] = weight
+        matrices.append(dense)
+        lines.append(line)
+    a, b, c = lines
+    f = (smoothed if smooth else lattice_random)(
+        a, b[:, None], c[:, None, None], seed=seed
+    )
+    return np.einsum("ia,jb,kc,cba->kji", *matrices, f, optimize=True)
 
 
 def _add_grid(

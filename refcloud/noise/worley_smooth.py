@@ -20,6 +20,7 @@ from refcloud.noise.fractal import octave_bound, octave_frame
 from refcloud.noise.gradient import gradient
 from refcloud.noise.gradient_grid import gradient_grid
 from refcloud.noise.lattice import PERIOD
+from refcloud.noise.remap import remap
 from refcloud.noise.smooth import smooth, smooth_grid
 from refcloud.noise.worley import worley
 from refcloud.noise.worley_cells import DType, Reals
@@ -151,6 +152,15 @@ def worley_smooth_grid(
             s += g * np.dtype(dtype).type(2.0**-i)
         s = _unsigned(s, octaves)
     return _filled(1 - w, s)
+
+
+def _literal(points: Array, seed: int, period: int | None, octaves: int) -> Array:
+    """Give the noise as its formula says it."""
+    w = 1.0 - np.minimum(worley(points, seed=seed, period=period), 1.0)
+    finer = None if period is None else FINER * period
+    s = smooth(points * FINER, seed=seed, period=finer, octaves=octaves)
+    one, zero = np.ones(1), np.zeros(1)
+    return remap(w, s - 1.0, one, zero, one)
 
 
 def _finer(period: int | None, octave: int = 0) -> int | None:
