@@ -31,6 +31,7 @@ from refcloud.noise.scattered import (
     Numbers,
     Places,
     _dimensions,
+    _floored,
     _places,
     _Room,
     _scattered,
@@ -201,10 +202,14 @@ def _gradient(
 
     The next call with the same room overwrites the result.
     """
-    cells = np.floor(columns)
-    pairs = _hashed_pairs(cells, how.lattice()) if box is None else box.at(cells)
-    places = _places(columns, cells, how.dtype)
-    return _paired(places, FADES[how.fade](places), pairs, how.rows(), room or _Room())
+    room = room or _Room()
+    cells = _floored(columns, room)
+    if box is None:
+        pairs = _hashed_pairs(cells, how.lattice())
+    else:
+        pairs = box.at(cells, room)
+    places = _places(columns, cells, how.dtype, room)
+    return _paired(places, FADES[how.fade](places), pairs, how.rows(), room)
 
 
 def _derivative(columns: Array, how: How) -> list[Numbers]:

@@ -72,13 +72,16 @@ class PairBox:
     counts: list[int]
     edges: NDArray[np.uint8]
 
-    def at(self, cells: Array) -> Pairs:
+    def at(self, cells: Array, room: _Room) -> Pairs:
         """Look up the pairs of whole numbers (N, n), shape (..., 2, n) as [y, z, n]."""
         steps = np.cumprod([1, *self.counts[:-1]])
         start = _index(cells, self.low, steps)
         # A row holds the pairs of all edges: the cache is missed once, not four times.
-        edges = self.edges.take(start, axis=0, mode="clip").T
-        found = edges.astype(np.intp, order="C")
+        count = self.edges.shape[1]
+        edges = room.take("edges", (start.size, count), np.uint8)
+        self.edges.take(start, axis=0, mode="wrap", out=edges)
+        found = room.take("pairs", (count, start.size), np.intp)
+        found[...] = edges.T
         return found.reshape(*[2] * (len(steps) - 1), -1)
 
 

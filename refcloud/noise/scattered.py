@@ -114,12 +114,21 @@ def _split(
     return floor.astype(np.int64), (reduced - floor).astype(dtype, copy=False)
 
 
-def _places(columns: Array, cells: Array, dtype: Dtype) -> Numbers:
+def _floored(columns: Array, room: _Room) -> Array:
+    """Give the cells of coordinates (N, n), still floats, in the coordinates' order."""
+    if columns.flags.c_contiguous:
+        return np.floor(columns, out=room.take("rows", columns.shape, float))
+    return np.floor(columns, out=room.take("cells", columns.T.shape, float).T)
+
+
+def _places(columns: Array, cells: Array, dtype: Dtype, room: _Room) -> Numbers:
     """Give the places of coordinates (N, n) in their cells, which are overwritten.
 
     Passes follow the memory of the coordinates; rounding the places lays them in rows.
     """
-    return np.subtract(columns, cells, out=cells).astype(dtype, order="C", copy=False)
+    places = room.take("places", columns.shape, dtype)
+    places[...] = np.subtract(columns, cells, out=cells)
+    return places
 
 
 def _index(cells: Array, low: list[int], steps: NDArray[np.int64]) -> NDArray[np.intp]:

@@ -21,6 +21,7 @@ from refcloud.noise.scattered import (
     Dtype,
     Numbers,
     _bounds,
+    _floored,
     _places,
     _Room,
     _scattered,
@@ -115,7 +116,7 @@ def _value(
     The next call with the same room overwrites the result.
     """
     room = room or _Room()
-    cells = np.floor(columns)
+    cells = _floored(columns, room)
     if table is None:
         table = _table(_ends(cells), cells.shape[1], how)
     if table is None:
@@ -123,7 +124,7 @@ def _value(
         layers = iter(_hashed(cells.astype(np.int64), how))
     else:
         layers = table.layers(cells, room)
-    places = _places(columns, cells, how.dtype)
+    places = _places(columns, cells, how.dtype, room)
     weights, _ = _taps(how.interpolant, places)
     total = room.take("total", places.shape[1:], how.dtype)
     for number, (layer, weight) in enumerate(zip(layers, weights, strict=True)):
