@@ -5,6 +5,17 @@ The lumps end a cell from their points: what is farther, a sample in a thousand,
 far (the one place where distances are cut at 1, see `refcloud.noise.worley_bound`).
 The lower end of the old range is s - 1, at most 0, and the upper is 1: no range is ever
 empty (E33), and [0, 1] stays within [0, 1].
+
+What is from where. Document D: the two noises, Worley as the scaffold that smooth noise
+populates, and that the scale function of Häggström's thesis combines them; not which of
+them is the value and which an end of the range. The thesis, as others quote it, has the
+form R(v, f - 1, 1, 0, 1) with v its coarse channel and f the weighted sum of its finer
+ones (Perlin-Worley noise, and 5/8, 1/4 and 1/8 of three octaves of Worley noise): where
+f is 1 the coarse noise stays v, where f is 0 it becomes (1 + v) / 2. The reading here
+is that form with D's noises in it: the scaffold is the coarse one, v = w, and smooth
+noise, whose octaves weigh 2^-i over their sum, is the fine one, f = s. That the
+scaffold's distance is cut at one cell, and that the finer noise begins with two cells
+to each of the scaffold, are choices of refcloud.
 """
 
 from __future__ import annotations
