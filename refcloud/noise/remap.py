@@ -6,7 +6,7 @@ combination of its two noises, and prints no formula; its sky's `scale(y, -1, 1,
 ("Real-time rendering of volumetric clouds", Umeå 2018) is known here from what others
 quote of it: it writes R(v, l0, h0, ln, hn) for the straight line of `remap`, a function
 that Schneider's talk and chapter on the clouds of Horizon Zero Dawn (2015, 2016) call
-Remap. None of them says what R is where l0 = h0 (E33).
+Remap. Where l0 = h0 the formula divides by zero (E33).
 """
 
 from __future__ import annotations
