@@ -15,17 +15,18 @@ import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed
-from refcloud.noise.fractal import (
+from refcloud.noise.gradient import Period
+from refcloud.noise.hashing import uniform
+from refcloud.noise.kinds import KINDS, KindName, _octave_columns
+from refcloud.noise.octaves import (
     Normalize,
     Octaves,
     Persistence,
     _finished,
+    _refuse_long,
     octave_bound,
     octave_frame,
 )
-from refcloud.noise.gradient import Period
-from refcloud.noise.hashing import uniform
-from refcloud.noise.kinds import KINDS, KindName, _octave_columns
 from refcloud.noise.scattered import Dtype, Numbers, Places, _scattered
 from refcloud.refusal import complaint
 
@@ -224,6 +225,4 @@ def _refuse(
         raise ValueError(complaint(name, expected, got))
     if period is not None and not KINDS[kind].tiles:
         raise ValueError(complaint("period", f"None for {kind!r}", str(period)))
-    if period is not None and period << (octaves - 1) > 2**31:
-        expected = f"at most {2**31 >> (octaves - 1)} for {octaves} octaves"
-        raise ValueError(complaint("period", expected, str(period)))
+    _refuse_long(period, octaves)

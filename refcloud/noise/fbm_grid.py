@@ -11,14 +11,14 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Seed, Shape, Skipped
 from refcloud.noise.fbm import _frame, _refuse
-from refcloud.noise.fractal import (
+from refcloud.noise.gradient import Period
+from refcloud.noise.kinds import KINDS, KindName, Octave, _octave_columns
+from refcloud.noise.octaves import (
     Normalize,
     Octaves,
     Persistence,
     octave_bound,
 )
-from refcloud.noise.gradient import Period
-from refcloud.noise.kinds import KINDS, KindName, Octave, _octave_columns
 from refcloud.noise.scattered import Dtype, Numbers
 
 

@@ -113,12 +113,12 @@ def _axis(coordinates: Array, interpolant: Interpolant, smooth: bool) -> AxisTap
     return _axis_taps(wanted, np.stack(weights), smooth)
 
 
-def _reduced(coordinates: Array) -> Array:
+def _reduced(coordinates: Array, period: float = PERIOD) -> Array:
     """Take finite coordinates modulo the period, exactly, keeping their sign."""
     # fmod costs as much as ten other passes, and leaves what is small as it is.
-    if not coordinates.size or np.abs(coordinates).max() < PERIOD:
+    if not coordinates.size or np.abs(coordinates).max() < period:
         return coordinates
-    return np.fmod(coordinates, PERIOD)
+    return np.fmod(coordinates, period)
 
 
 def _cells(reduced: Array) -> tuple[Cells, Array]:

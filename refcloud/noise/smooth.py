@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from refcloud.checking import checked, complaint
 from refcloud.conventions import Array, MayBeNotFinite, Range, Seed, Shape
-from refcloud.noise.fractal import octave_frame
 from refcloud.noise.hashing import uniform
 from refcloud.noise.lattice import PERIOD, Cells
+from refcloud.noise.octaves import octave_frame
 from refcloud.noise.worley_cells import DType, Reals, _split, _wrapped
 
 Octaves = Annotated[int, Range(1, 32)]

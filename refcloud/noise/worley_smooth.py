@@ -27,10 +27,10 @@ from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, MayBeNotFinite, Range, Seed, Shape
-from refcloud.noise.fractal import octave_bound, octave_frame
 from refcloud.noise.gradient import gradient
 from refcloud.noise.gradient_grid import gradient_grid
 from refcloud.noise.lattice import PERIOD
+from refcloud.noise.octaves import octave_bound, octave_frame
 from refcloud.noise.remap import remap
 from refcloud.noise.smooth import smooth, smooth_grid
 from refcloud.noise.worley import worley
