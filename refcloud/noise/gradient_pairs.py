@@ -191,8 +191,8 @@ def _paired(
 
 def _look_up(both: Numbers, pair: Pairs, out: Numbers) -> None:
     """Write the two numbers of every pair side by side, (..., n) to (..., 2n)."""
-    into = out.reshape(*pair.shape, 2)
-    np.take(both, pair, axis=0, out=into, mode="wrap")
+    # The method: numpy's function of that name takes a microsecond more.
+    both.take(pair, 0, out.reshape(*pair.shape, 2), "wrap")
 
 
 def _blend(low: Numbers, high: Numbers, fade: Numbers) -> Numbers:

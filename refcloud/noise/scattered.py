@@ -15,7 +15,9 @@ Dtype = Literal["float64", "float32"]
 Places = Annotated[Array, Shape("...", "N"), MayBeNotFinite]
 Numbers = NDArray[Any]  # float64 or float32, as the caller asked
 
-CHUNK = 1 << 14  # points at a time: their corners stay in the cache
+# Points at a time, twice as many in float32: their corners stay in the cache, and a
+# hundred calls of numpy, at half a microsecond, cost a point 2 to 3 ns.
+CHUNK = 1 << 14
 PERIOD = 2.0**32  # lattice coordinates wrap here, for every hash
 
 
@@ -67,8 +69,9 @@ def _scattered(
     flat = points.reshape(-1, points.shape[-1])
     out = np.empty((results, len(flat)), dtype)
     most = PERIOD if period is None else float(period)
-    for first in range(0, len(flat), CHUNK):
-        part = slice(first, first + CHUNK)
+    step = _chunk(dtype)
+    for first in range(0, len(flat), step):
+        part = slice(first, first + step)
         chunk = flat[part]
         if inside:
             out[:, part] = noise(chunk.T)
@@ -84,6 +87,11 @@ def _scattered(
     if results == 1:
         return out[0].reshape(points.shape[:-1])[()]
     return np.ascontiguousarray(out.T).reshape(*points.shape[:-1], results)
+
+
+def _chunk(dtype: Dtype) -> int:
+    """Give how many points are worked on at a time."""
+    return 2 * CHUNK if dtype == "float32" else CHUNK
 
 
 def _bounds(points: Array, period: int | None) -> Iterator[NDArray[np.int64]]:
@@ -138,7 +146,7 @@ def _index(cells: Array, low: list[int], steps: NDArray[np.int64]) -> NDArray[np
     numbers whose sum is below 2^53 are exact as float64, where they multiply faster.
     """
     index = steps.astype(np.float64) @ cells
-    index -= float(sum(int(s) * c for s, c in zip(steps, low, strict=True)))
+    index -= sum(int(s) * c for s, c in zip(steps, low, strict=True))
     return index.astype(np.intp)
 
 

@@ -150,7 +150,7 @@ def _summed(
     values: Numbers, of: int, weights: tuple[Numbers, ...], axis: int
 ) -> Numbers:
     """Sum the neighbours along an axis of values, weighted, in place of the first."""
-    first, *others = np.moveaxis(values, of, 0)
+    first, *others = values.swapaxes(0, of)
     first *= weights[0][axis]
     for other, weight in zip(others, weights[1:], strict=True):
         other *= weight[axis]

@@ -76,7 +76,7 @@ class Table:
             for j, i in np.ndindex(f.shape[:2]):
                 # A view that starts further on spares adding to every index.
                 ahead = self.values[k * z + j * y + i * x :]
-                np.take(ahead, start, mode="wrap", out=f[j, i])
+                ahead.take(start, None, f[j, i], "wrap")
             yield f
 
 
