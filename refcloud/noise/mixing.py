@@ -144,9 +144,9 @@ def _joined(axes: Sequence[Bits], seed: int, hash: Hash) -> Bits:
     return _finished(total if others else total.copy())
 
 
-def _finished(total: Bits) -> Bits:
-    """Mix the sum of the axes' words, in place."""
-    high = total >> FIRST
+def _finished(total: Bits, high: Bits | None = None) -> Bits:
+    """Mix the sum of the axes' words, in place; high is an array to work in."""
+    high = np.right_shift(total, FIRST, out=high)
     total ^= high
     total *= np.uint32(FACTORS[0])
     total ^= np.right_shift(total, SECOND, out=high)

@@ -156,7 +156,7 @@ def _picks(
         sums[corner] += sums[corner - 1]
     _sum(ahead, sums[n])
     sums[n] += sums[0]
-    bits = _finished(sums)
+    bits = _finished(sums, room.take("high", sums.shape, np.uint32))
     picks[...] = _chosen(bits, count, out=bits)
     return picks
 
@@ -204,6 +204,8 @@ def _hash_lines(low: Array, high: Array, seed: int, hash: Hash, room: _Room) -> 
 
 
 def _broadcast(columns: Columns) -> tuple[int, ...]:
+    if isinstance(columns, np.ndarray):
+        return columns.shape[1:]
     return np.broadcast_shapes(*(column.shape for column in columns))
 
 
