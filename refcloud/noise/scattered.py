@@ -25,7 +25,7 @@ class _Room:
     """Arrays that chunk after chunk is worked out in.
 
     Memory that is fresh for each chunk costs as much as the work: the system clears
-    its pages.
+    its pages. A room serves one call: its hashed lines are those of one seed and hash.
     """
 
     def __init__(self) -> None:
