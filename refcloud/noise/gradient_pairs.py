@@ -32,7 +32,7 @@ MOST_LATTICE = 1 << 21  # bytes of a box: beyond, the cache misses cost what it 
 WORTH = 2  # lattice points hashed for a box take less time than one point's corners
 SLAB = 1 << 15  # lattice points hashed at a time
 
-Pairs = NDArray[np.intp]
+Pairs = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -82,9 +82,7 @@ class PairBox:
             # A view that starts further on spares adding to every index.
             ahead = sum(s * c for s, c in zip(across, corner, strict=True))
             self.pairs[ahead:].take(start, None, edge, "wrap")
-        found = room.take("pairs", edges.shape, np.intp)
-        found[...] = edges
-        return found.reshape(*[2] * len(across), -1)
+        return edges.reshape(*[2] * len(across), -1)
 
 
 def _pair_box(points: Array, lattice: Lattice) -> PairBox | None:
@@ -137,7 +135,7 @@ def _hashed_pairs(lows: Array, lattice: Lattice) -> Pairs:
     pair = pick[0]
     pair *= lattice.gradients
     pair += pick[1]
-    return pair.astype(np.intp)
+    return pair
 
 
 @functools.lru_cache(maxsize=32)
@@ -171,7 +169,9 @@ def _paired(
     pairs = pairs.reshape(2, -1, n)
     total = room.take("total", (*pairs.shape[:2], 2 * n), dtype)
     slope = room.take("slope", total.shape[1:], dtype)
-    for both, pair, along_y in zip(total, pairs, (offset[1], beyond[0]), strict=True):
+    pair = room.take("pair", pairs.shape[1:], np.intp)
+    for both, edges, along_y in zip(total, pairs, (offset[1], beyond[0]), strict=True):
+        pair[...] = edges
         _look_up(table[0], pair, both)
         both *= offset[0]
         _look_up(table[1], pair, slope)
@@ -186,21 +186,24 @@ def _paired(
     # What was blended along z stands where its upper end was.
     low, high = total[:, -1]
     _blend(low, high, fade[0])
-    return _blend(high[0::2], high[1::2], fades[0])
+    low, high = high[0::2], high[1::2]
+    blended = np.subtract(high, low, out=room.take("blended", (n,), dtype))
+    blended *= fades[0]
+    blended += low
+    return blended
 
 
-def _look_up(both: Numbers, pair: Pairs, out: Numbers) -> None:
+def _look_up(both: Numbers, pair: NDArray[np.intp], out: Numbers) -> None:
     """Write the two numbers of every pair side by side, (..., n) to (..., 2n)."""
     # The method: numpy's function of that name takes a microsecond more.
     both.take(pair, 0, out.reshape(*pair.shape, 2), "wrap")
 
 
-def _blend(low: Numbers, high: Numbers, fade: Numbers) -> Numbers:
+def _blend(low: Numbers, high: Numbers, fade: Numbers) -> None:
     """Go from low to high as far as the fade says, in place of high."""
     high -= low
     high *= fade
     high += low
-    return high
 
 
 def _side_by_side(rows: Numbers, out: Numbers) -> Numbers:
