@@ -146,7 +146,8 @@ def _index(cells: Array, low: list[int], steps: NDArray[np.int64]) -> NDArray[np
     numbers whose sum is below 2^53 are exact as float64, where they multiply faster.
     """
     index = steps.astype(np.float64) @ cells
-    index -= sum(int(s) * c for s, c in zip(steps, low, strict=True))
+    if start := sum(int(s) * c for s, c in zip(steps, low, strict=True)):
+        index -= start
     return index.astype(np.intp)
 
 
