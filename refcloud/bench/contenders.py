@@ -25,7 +25,9 @@ Precision = Literal["float32", "float64"]
 
 PEERS = ("noise", "pyfastnoiselite", "scipy")
 UNITS = 8.0  # cells along each axis of the grid
+ODD = 0.9904  # makes a spacing of which no whole number is a unit
 REACH = 100.0  # cells along each axis that scattered points fill
+WORLEY_CELLS = (8, 16, 32)  # along each axis of the grid
 PEER_SHARE = 16  # peers that take one point a call get this share of them
 PRECISIONS: tuple[Precision, ...] = ("float32", "float64")
 
@@ -81,6 +83,12 @@ def on_a_grid(size: int) -> list[Contender]:
         lambda d: ours.value_grid(x, x, x, seed=1, interpolant="quintic", dtype=d),
     )
     enter("simplex", "", lambda d: ours.simplex_grid(x, x, x, seed=1, dtype=d))
+    odd = x * ODD
+    enter(
+        "simplex",
+        "any spacing",
+        lambda d: ours.simplex_grid(odd, odd, odd, seed=1, dtype=d),
+    )
     enter("fBm, 4 octaves,", "", lambda d: ours.fbm_grid(x, x, x, seed=1, dtype=d)[0])
     enter(
         "fBm, 4 octaves,",
@@ -111,6 +119,11 @@ def at_points(count: int) -> list[Contender]:
         "Perlin",
         "value, 27 taps",
         lambda d: ours.value(at, seed=1, interpolant="quintic", dtype=d),
+    )
+    enter(
+        "Perlin",
+        "value, the paper's hash",
+        lambda d: ours.value(at, seed=None, interpolant="quintic", dtype=d),
     )
     enter("simplex", "", lambda d: ours.simplex(at, seed=1, dtype=d))
     return found + _peers(at, "scattered")
@@ -145,8 +158,15 @@ def _peers(at: Array, where: str) -> list[Contender]:
 
 
 def worley_on_a_grid(size: int) -> list[Contender]:
-    """List all that make Worley noise on a grid."""
-    return _worley("grid", worley_contenders("grid", side=size))
+    """List all that make Worley noise on a grid, of few cells and of many."""
+    return [
+        contender
+        for cells in WORLEY_CELLS
+        for contender in _worley(
+            f"grid, {cells} cells",
+            worley_contenders("grid", cells=cells, side=size),
+        )
+    ]
 
 
 def worley_at_points(count: int) -> list[Contender]:

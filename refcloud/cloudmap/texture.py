@@ -1,4 +1,10 @@
-"""Document D's cloud: a texture of Worley and smooth noise that tiles, in a box."""
+"""Document D's cloud: a texture of Worley and smooth noise that tiles, in a box.
+
+Document D does not say how its texture's values become densities. Here `remap` is used
+once more, with the level at which cloud begins as the lower end of the old range, and
+what falls below 0 is cut: the form in which Schneider's chapter and Häggström's thesis
+(see `refcloud.noise.remap`) apply their coverage to a noise.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +15,7 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.cloudmap.voxels import VoxelGrid
 from refcloud.conventions import Positive, Range, Seed
-from refcloud.noise import worley_smooth_grid
+from refcloud.noise import remap, worley_smooth_grid
 from refcloud.noise.worley_smooth import Detail, Octaves, Period
 
 # Where cloud begins: near the median of the noise (0.65 to two places, over seeds and
@@ -67,6 +73,7 @@ def worley_smooth_texture(
     noise = worley_smooth_grid(
         line, line, line, seed=seed, period=cells, octaves=octaves, detail=detail
     )
-    density = np.maximum((noise - threshold) / (1.0 - threshold), 0.0)
+    low, one = np.array(threshold), np.ones(())
+    density = np.maximum(remap(noise, low, one, 0.0 * one, one), 0.0)
     corner = np.full(3, 0.5 * side)
     return VoxelGrid(density, -corner, corner)

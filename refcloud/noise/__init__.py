@@ -3,12 +3,7 @@
 from refcloud.noise.directions import gradient_set
 from refcloud.noise.fbm import fbm, turbulence
 from refcloud.noise.fbm_grid import fbm_grid, turbulence_grid
-from refcloud.noise.fractal import (
-    octave_bound,
-    octave_frame,
-    octave_sum,
-    octave_sum_grid,
-)
+from refcloud.noise.fractal import octave_sum, octave_sum_grid
 from refcloud.noise.gradient import gradient, gradient_derivative
 from refcloud.noise.gradient_grid import gradient_grid
 from refcloud.noise.hashing import elias2d, lattice_random, man2003, uniform
@@ -22,6 +17,7 @@ from refcloud.noise.interpolate import (
 )
 from refcloud.noise.lattice import smoothed
 from refcloud.noise.mixing import lattice_bits, permutation_table
+from refcloud.noise.octaves import octave_bound, octave_frame
 from refcloud.noise.remap import remap
 from refcloud.noise.sheet import cloud_sheet, exponential_filter, overlap_octaves
 from refcloud.noise.sheet_map import sheet_map, wrap_halo, wrapped_bilinear

@@ -8,21 +8,25 @@ the absolute value of the whole sum is paper M's, `octave_sum`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed
-from refcloud.noise.fractal import (
+from refcloud.noise.gradient import Period
+from refcloud.noise.hashing import uniform
+from refcloud.noise.kinds import KINDS, KindName, _octave_columns
+from refcloud.noise.octaves import (
     Normalize,
     Octaves,
     Persistence,
     _finished,
+    _refuse_long,
     octave_bound,
     octave_frame,
 )
-from refcloud.noise.gradient import Period
-from refcloud.noise.hashing import uniform
-from refcloud.noise.kinds import KINDS, KindName, _octave_columns
 from refcloud.noise.scattered import Dtype, Numbers, Places, _scattered
 from refcloud.refusal import complaint
 
@@ -148,6 +152,23 @@ def turbulence(
     return _sum(points, *how, absolute=True)
 
 
+def _literal(
+    points: Array,
+    noise: Callable[..., Any],
+    seed: int,
+    octaves: int,
+    persistence: float,
+    absolute: bool,
+) -> Array:
+    """Give a sum of octaves of any noise(points, seed=...), as its formula says it."""
+    total: Array = np.zeros(points.shape[:-1])
+    for i in range(octaves):
+        own, shift = _frame(i, points.shape[-1], seed)
+        octave = noise(points * 2.0**i + shift, seed=own)
+        total += persistence**i * (np.abs(octave) if absolute else octave)
+    return total
+
+
 def _sum(
     points: Array,
     kind: KindName,
@@ -204,6 +225,4 @@ def _refuse(
         raise ValueError(complaint(name, expected, got))
     if period is not None and not KINDS[kind].tiles:
         raise ValueError(complaint("period", f"None for {kind!r}", str(period)))
-    if period is not None and period << (octaves - 1) > 2**31:
-        expected = f"at most {2**31 >> (octaves - 1)} for {octaves} octaves"
-        raise ValueError(complaint("period", expected, str(period)))
+    _refuse_long(period, octaves)

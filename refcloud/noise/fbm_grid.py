@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, Any
 
 import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Seed, Shape, Skipped
 from refcloud.noise.fbm import _frame, _refuse
-from refcloud.noise.fractal import (
+from refcloud.noise.gradient import Period
+from refcloud.noise.kinds import KINDS, KindName, Octave, _octave_columns
+from refcloud.noise.octaves import (
     Normalize,
     Octaves,
     Persistence,
     octave_bound,
 )
-from refcloud.noise.gradient import Period
-from refcloud.noise.kinds import KINDS, KindName, _octave_columns
 from refcloud.noise.scattered import Dtype, Numbers
 
 
@@ -156,6 +157,24 @@ def turbulence_grid(
     return _sum_grid((x, y, z), *how, absolute=True)
 
 
+def _literal(
+    axes: list[Array],
+    grid: Callable[..., Any],
+    seed: int,
+    octaves: int,
+    persistence: float,
+    absolute: bool,
+) -> Array:
+    """Give a sum of octaves of any grid(x, ..., seed=...), as its formula says it."""
+    total: Array = np.zeros([axis.size for axis in axes[::-1]])
+    for i in range(octaves):
+        own, shift = _frame(i, len(axes), seed)
+        moved = [axis * 2.0**i + s for axis, s in zip(axes, shift, strict=True)]
+        octave = grid(*moved, seed=own)
+        total += persistence**i * (np.abs(octave) if absolute else octave)
+    return total
+
+
 def _sum_grid(
     axes: tuple[Array, Array, Array | None],
     kind: KindName,
@@ -179,7 +198,7 @@ def _sum_grid(
     bound = octave_bound(octaves, persistence)
     kept = [i for i in range(octaves) if finest is None or 2.0**-i >= finest]
     scale = 1.0 / bound if normalize == "bound" else 1.0
-    total = np.zeros([line.size for line in lines[::-1]], dtype)
+    summed = []
     for i in kept:
         own, shift = _frame(i, len(lines), seed)
         repeat = None if period is None else period << i
@@ -188,8 +207,12 @@ def _sum_grid(
             _octave_columns(line[np.newaxis], i, shift[k], wrap)[0]
             for k, line in enumerate(lines)
         ]
-        weight = scale * persistence**i
-        KINDS[kind].add(total, weight, placed, own, repeat, absolute)
+        summed.append(Octave(scale * persistence**i, placed, own, repeat))
+    total = np.empty([line.size for line in lines[::-1]], dtype)
+    if summed:
+        KINDS[kind].fill(total, summed, absolute)
+    else:
+        total[...] = 0.0
     result = total.reshape(shape)
     if normalize == "clip":
         np.clip(result, -1.0, 1.0, out=result)

@@ -1,89 +1,33 @@
-"""The sum of octaves (eq 1), its true bound, and octaves too fine to be seen.
+"""The sum of octaves (eq 1) of value noise, at points and on a grid.
 
 Each octave is value noise at twice the frequency and `persistence` times the amplitude.
-With a seed every octave has a pattern and an origin of its own; without one (the paper
-to the letter) all octaves share the origin, and their lattices coincide there.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 
 from refcloud.checking import checked
-from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
-from refcloud.noise.hashing import _hash, _words, uniform
-from refcloud.noise.lattice import _reduced
-from refcloud.noise.scattered import _scattered
-from refcloud.noise.value import How, Points, _value
+from refcloud.conventions import Array, Positive, Seed, Shape, Skipped
+from refcloud.noise.gradient import Period
+from refcloud.noise.lattice import PERIOD, _reduced
+from refcloud.noise.octaves import (
+    Normalize,
+    Octaves,
+    Persistence,
+    _finished,
+    _refuse_long,
+    octave_bound,
+    octave_frame,
+)
+from refcloud.noise.scattered import Dtype, Numbers, _scattered
+from refcloud.noise.value import Points, _value, value
 from refcloud.noise.value_grid import Axes, _add_grid
+from refcloud.noise.value_table import How
 from refcloud.noise.weights import PEAKS, Interpolant
-
-Normalize = Literal["clip", "bound", "none"]
-# 32 octaves: the finest cell is 2^-31 of the first, below float64 at 2^21 cells.
-Octaves = Annotated[int, Range(1, 32)]
-Persistence = Annotated[float, Range(0.0, 1.0)]
-
-
-@checked
-def octave_bound(octaves: Octaves, persistence: Persistence) -> float:
-    """Give the largest value that a sum of octaves of values in [-1, 1] can take.
-
-    Formula: sum of s^i for i < Z = (1 - s^Z) / (1 - s)
-
-    Parameters
-    ----------
-    octaves
-        How many octaves are summed (Z).
-    persistence
-        Each octave's amplitude relative to the one before (s).
-
-    Returns
-    -------
-    The bound, at least 1.
-
-    Source: paper M, eq 1; E11.
-
-    Examples
-    --------
-    >>> octave_bound(4, 0.5)
-    1.875
-    """
-    return math.fsum(persistence**i for i in range(octaves))
-
-
-@checked
-def octave_frame(
-    octave: Annotated[int, Range(0, 31)], *, seed: Seed | None = 0
-) -> tuple[int | None, Array]:
-    """Give the seed and the shift of the origin that an octave uses.
-
-    Formula: octave i is value(2^i p + shift_i, seed=seed_i)
-
-    Parameters
-    ----------
-    octave
-        Which octave, counted from 0.
-    seed
-        The sum's seed. With None every octave has seed None and no shift, as printed.
-
-    Returns
-    -------
-    The octave's seed, and its shift, shape (3,), in cells of the octave, in [0, 1).
-
-    Source: paper M, eq 1 shares one origin among all octaves; W12.
-
-    Examples
-    --------
-    >>> octave_frame(2, seed=None)
-    (None, array([0., 0., 0.]))
-    """
-    if seed is None:
-        return None, np.zeros(3)
-    own = int(_hash([_words("octave", octave)], seed)[0] >> 1)
-    return own, uniform(octave, np.arange(3), seed=seed)
 
 
 @checked
@@ -96,7 +40,9 @@ def octave_sum(
     interpolant: Interpolant = "cosine",
     normalize: Normalize = "clip",
     absolute: bool = True,
-) -> Array:
+    period: Period | None = None,
+    dtype: Dtype = "float64",
+) -> Numbers:
     """Give the paper's fractal noise at scattered points.
 
     Formula: |sum of s^i h(2^i p) for i < Z|
@@ -118,10 +64,20 @@ def octave_sum(
         "bound" divides by the largest possible value, "none" leaves it (E11).
     absolute
         Whether the sum's absolute value is taken, as the paper does.
+    period
+        After how many cells of the first octave the sum repeats along each axis. None
+        is 2^32.
+    dtype
+        Precision of the interpolation and the result; lattice values are exact.
 
     Returns
     -------
     Shape (...,), in [0, 1], or [-1, 1] where not absolute; "none" reaches the bound.
+
+    Raises
+    ------
+    ValueError
+        The finest octave's period is above 2^31.
 
     Source: paper M, eq 1 (N15); E11.
 
@@ -130,18 +86,20 @@ def octave_sum(
     >>> octave_sum(np.zeros((5, 3)), seed=7).shape
     (5,)
     """
+    _refuse_long(period, octaves)
     frames = [octave_frame(i, seed=seed) for i in range(octaves)]
 
-    def noise(columns: Array) -> Array:
-        total = np.zeros_like(columns[0])
+    def noise(columns: Array) -> Numbers:
+        total = np.zeros(columns.shape[1], dtype)
         for i, (own, shift) in enumerate(frames):
-            places = np.array(_placed(tuple(columns), i, shift))
-            how = How(own, interpolant, True)
-            total += persistence**i * _value(_reduced(places), how)
+            how = _how(own, i, interpolant, period, dtype)
+            places = np.array(_placed(tuple(columns), i, shift, how))
+            total += persistence**i * _value(places, how)
         return total
 
     bound = octave_bound(octaves, persistence) * PEAKS[interpolant] ** 3
-    return _finished(_scattered(points, noise, "float64"), bound, normalize, absolute)
+    found = _scattered(points, noise, dtype, period)
+    return _finished(found, bound, normalize, absolute)
 
 
 @checked
@@ -156,8 +114,10 @@ def octave_sum_grid(
     interpolant: Interpolant = "cosine",
     normalize: Normalize = "clip",
     absolute: bool = True,
+    period: Period | None = None,
+    dtype: Dtype = "float64",
     finest: Annotated[float, Positive] | None = None,
-) -> tuple[Array, tuple[Skipped, ...]]:
+) -> tuple[Numbers, tuple[Skipped, ...]]:
     """Give the paper's fractal noise on a grid, without octaves too fine to be seen.
 
     Formula: |sum of s^i h(2^i p) for i < Z with 2^-i >= finest|
@@ -179,6 +139,11 @@ def octave_sum_grid(
         "bound" divides by the largest possible value, "none" leaves it (E11).
     absolute
         Whether the sum's absolute value is taken, as the paper does.
+    period
+        After how many cells of the first octave the sum repeats along each axis. None
+        is 2^32.
+    dtype
+        Precision of the interpolation and the result; lattice values are exact.
     finest
         Spacing of the samples, in cells of the first octave. Lattice noise repeats in
         two cells at the least, so an octave with less than one sample per cell cannot
@@ -189,6 +154,11 @@ def octave_sum_grid(
     The values, shape (D, H, W) as [z, y, x], and a row for what was skipped, whose
     bound is the sum of the skipped amplitudes.
 
+    Raises
+    ------
+    ValueError
+        The finest octave's period is above 2^31.
+
     Source: paper M, eq 1 (N15, N16); E11.
 
     Examples
@@ -197,14 +167,15 @@ def octave_sum_grid(
     >>> print(skipped[0])
     noise: 2 of 4 octaves too fine to show skipped, error at most 0.38 (noise)
     """
+    _refuse_long(period, octaves)
     peak = PEAKS[interpolant] ** 3
     bound = octave_bound(octaves, persistence) * peak
     kept = [i for i in range(octaves) if finest is None or 2.0**-i >= finest]
-    total: Array = np.zeros((z.size, y.size, x.size))
+    total = np.zeros((z.size, y.size, x.size), dtype)
     for i in kept:
         own, shift = octave_frame(i, seed=seed)
-        axes = _placed((x, y, z), i, shift)
-        _add_grid(total, persistence**i, axes, How(own, interpolant, True))
+        how = _how(own, i, interpolant, period, dtype)
+        _add_grid(total, persistence**i, _placed((x, y, z), i, shift, how), how)
     values = _finished(total, bound, normalize, absolute)
     if len(kept) == octaves:
         return values, ()
@@ -220,22 +191,39 @@ def octave_sum_grid(
     return values, (row,)
 
 
-def _placed(axes: Axes, octave: int, shift: Array) -> Axes:
+def _literal(
+    points: Array,
+    seed: int | None,
+    octaves: int,
+    persistence: float,
+    interpolant: Interpolant,
+) -> Array:
+    """Give the sum of eq 1 as it stands: |sum of s^i h(2^i p)|."""
+    total: Array = np.zeros(points.shape[:-1])
+    for i in range(octaves):
+        own, shift = octave_frame(i, seed=seed)
+        places = points * 2.0**i + shift
+        total += persistence**i * value(places, seed=own, interpolant=interpolant)
+    return np.abs(total)
+
+
+def _how(
+    seed: int | None,
+    octave: int,
+    interpolant: Interpolant,
+    period: int | None,
+    dtype: Dtype,
+) -> How:
+    """Say how the value noise of an octave is made."""
+    repeat = None if period is None else period << octave
+    return How(seed, interpolant, True, repeat, dtype)
+
+
+def _placed(axes: Axes, octave: int, shift: Array, how: How) -> Axes:
     """Give coordinates in cells of an octave; reducing first keeps them exact."""
+    wrap = PERIOD if how.period is None else float(how.period)
     x, y, z = (
-        _reduced(_reduced(c) * 2.0**octave) + s
+        _reduced(_reduced(_reduced(c, wrap) * 2.0**octave, wrap) + s, wrap)
         for c, s in zip(axes, shift, strict=True)
     )
     return x, y, z
-
-
-def _finished(
-    total: Array, bound: float, normalize: Normalize, absolute: bool
-) -> Array:
-    if absolute:
-        total = np.abs(total)
-    if normalize == "bound":
-        return total / bound
-    if normalize == "clip":
-        return np.clip(total, -1.0, 1.0)
-    return total

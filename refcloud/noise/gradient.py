@@ -32,6 +32,8 @@ from refcloud.noise.scattered import (
     Places,
     _dimensions,
     _floored,
+    _places,
+    _Room,
     _scattered,
     _split,
 )
@@ -98,9 +100,13 @@ def gradient(
     """
     name = _named(gradients, _dimensions(points, (2, 3)))
     how = How(seed, fade, name, period, hash, dtype)
-    box = _pair_box(points, how.lattice())
+    box, room = _pair_box(points, how.lattice()), _Room()
     return _scattered(
-        points, lambda axes: _gradient(axes, how, box), dtype, period, inside=bool(box)
+        points,
+        lambda axes: _gradient(axes, how, box, room),
+        dtype,
+        period,
+        inside=bool(box),
     )
 
 
@@ -189,11 +195,21 @@ def _literal(points: Array, seed: int, fade: Fade, name: Gradients) -> Array:
     return total / PEAKS[name][fade]
 
 
-def _gradient(columns: Array, how: How, box: PairBox | None = None) -> Numbers:
-    """Give gradient noise at finite points, coordinates in rows, shape (N, n)."""
-    cells, places = _floored(columns, how.dtype)
-    pairs = _hashed_pairs(cells, how.lattice()) if box is None else box.at(cells)
-    return _paired(places, FADES[how.fade](places), pairs, how.rows())
+def _gradient(
+    columns: Array, how: How, box: PairBox | None = None, room: _Room | None = None
+) -> Numbers:
+    """Give gradient noise at finite points, coordinates in rows, shape (N, n).
+
+    The next call with the same room overwrites the result.
+    """
+    room = room or _Room()
+    cells = _floored(columns, room)
+    if box is None:
+        pairs = _hashed_pairs(cells, how.lattice())
+    else:
+        pairs = box.at(cells, room)
+    places = _places(columns, cells, how.dtype, room)
+    return _paired(places, FADES[how.fade](places), pairs, how.rows(), room)
 
 
 def _derivative(columns: Array, how: How) -> list[Numbers]:

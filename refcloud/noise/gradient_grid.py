@@ -8,10 +8,12 @@ and eight dot products.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed, Shape
@@ -86,7 +88,7 @@ def gradient_grid(
     axes = (x, y) if z is None else (x, y, z)
     how = How(seed, fade, _named(gradients, len(axes)), period, hash, dtype)
     out = np.empty([axis.size for axis in axes[::-1]], dtype)
-    _fill(out, axes, how, np.copyto)
+    _fill(out, [Layer(axes, how)])
     return out
 
 
@@ -105,56 +107,87 @@ def _literal(x: Array, y: Array, z: Array, seed: int, rows: Array) -> Array:
     return np.tensordot(W[2], A, 1) + np.tensordot(D[2], B, 1)
 
 
-def _fill(
-    out: Numbers,
-    axes: tuple[Array, ...],
-    how: How,
-    put: Callable[[Numbers, Numbers], None],
-    scale: float = 1.0,
-) -> None:
-    """Give `put` each part of out and its scaled noise, axes in any order."""
+@dataclass(frozen=True)
+class Layer:
+    """One noise of a sum: where its samples lie, how it is made, and its weight."""
+
+    axes: tuple[Array, ...]
+    how: How
+    scale: float = 1.0
+
+    def ascending(self) -> tuple[Layer, list[NDArray[np.intp] | None]]:
+        """Give the layer with its axes reduced and sorted, and their orders."""
+        found = [_ascending(c, self.how.period) for c in self.axes]
+        places = tuple(place for place, _ in found)
+        return Layer(places, self.how, self.scale), [order for _, order in found]
+
+    def part(self, number: int, chosen: slice) -> Layer:
+        """Keep some samples of an axis."""
+        fewer = list(self.axes)
+        fewer[number] = fewer[number][chosen]
+        return Layer(tuple(fewer), self.how, self.scale)
+
+    def most(self) -> int:
+        """Count the lattice points, or the values blended along x where more."""
+        lines = [_lines(places).size for places in self.axes]
+        blended = len(lines) * self.axes[0].size * int(np.prod(lines[1:]))
+        return max(blended, int(np.prod(lines)))
+
+
+def _fill(out: Numbers, layers: list[Layer], absolute: bool = False) -> None:
+    """Fill out with the sum of layers, or of their absolute values, axes in any order.
+
+    All layers are summed tile by tile, while a tile is in the cache: the result goes
+    through memory once.
+    """
     if not out.size:
         return
-    places, orders = zip(*(_ascending(c, how.period) for c in axes), strict=True)
-    if all(order is None for order in orders):
-        _fill_part(out, places, how, put, scale)
+    laid, orders = zip(*(layer.ascending() for layer in layers), strict=True)
+    if all(order is None for each in orders for order in each):
+        _fill_part(out, list(laid), absolute)
         return
-    part = np.empty_like(out)
-    _fill_part(part, places, how, np.copyto, scale)
-    index = np.ix_(
-        *(
-            np.arange(n) if order is None else np.argsort(order)
-            for n, order in zip(out.shape, orders[::-1], strict=True)
+    # Layers that are sorted differently do not share tiles.
+    out[...] = 0.0
+    for layer, each in zip(laid, orders, strict=True):
+        part = np.empty_like(out)
+        _fill_part(part, [layer], absolute)
+        index = np.ix_(
+            *(
+                np.arange(n) if order is None else np.argsort(order)
+                for n, order in zip(out.shape, each[::-1], strict=True)
+            )
         )
-    )
-    put(out, part[index])
+        out += part[index]
 
 
-def _fill_part(
-    out: Numbers,
-    places: tuple[Array, ...],
-    how: How,
-    put: Callable[[Numbers, Numbers], None],
-    scale: float,
-) -> None:
+def _fill_part(out: Numbers, layers: list[Layer], absolute: bool) -> None:
     """Fill a part of a grid, halved until what is blended along x is small enough."""
-    lines = [_lines(p).size for p in places]
-    blended = len(lines) * out.shape[-1] * int(np.prod(lines[1:]))
-    if max(blended, int(np.prod(lines))) > MOST_BLENDED and out.size > 1:
+    if max(layer.most() for layer in layers) > MOST_BLENDED and out.size > 1:
         longest = int(np.argmax(out.shape))
         half = out.shape[longest] // 2
-        for part in (slice(None, half), slice(half, None)):
-            fewer = list(places)
-            fewer[-1 - longest] = places[-1 - longest][part]
-            where = (slice(None),) * longest + (part,)
-            _fill_part(out[where], tuple(fewer), how, put, scale)
+        for chosen in (slice(None, half), slice(half, None)):
+            where = (slice(None),) * longest + (chosen,)
+            fewer = [layer.part(out.ndim - 1 - longest, chosen) for layer in layers]
+            _fill_part(out[where], fewer, absolute)
         return
-    axes = [_axis(p, k, how) for k, p in enumerate(places)]
-    level = _blended_along_x(axes, how, scale)
-    for rows in range(len(axes[1].tiles)):
-        for planes, values in _values(level, axes, rows):
-            where = axes[1].tiles[rows].samples
-            put(out[planes, where] if len(axes) == 3 else out[where], values)
+    laid = [
+        [_axis(p, k, layer.how) for k, p in enumerate(layer.axes)] for layer in layers
+    ]
+    levels = [
+        _blended_along_x(axes, layer.how, layer.scale)
+        for axes, layer in zip(laid, layers, strict=True)
+    ]
+    for rows, tile in enumerate(laid[0][1].tiles):
+        made = (
+            _values(level, axes, rows) for level, axes in zip(levels, laid, strict=True)
+        )
+        for same in zip(*made, strict=True):
+            planes, total = same[0]
+            if absolute:
+                np.abs(total, out=total)
+            for _, values in same[1:]:
+                total += np.abs(values, out=values) if absolute else values
+            out[(planes, tile.samples) if out.ndim == 3 else tile.samples] = total
 
 
 def _blended_along_x(
@@ -175,8 +208,9 @@ def _blended_along_x(
             step = max(1, MOST_PRODUCTS // weights.size)
             for first in range(0, len(pick), step):
                 part = slice(first, first + step)
-                values = slopes[part, tile.lines] @ weights
-                out[part, tile.samples] = values
+                np.matmul(
+                    slopes[part, tile.lines], weights, out=out[part, tile.samples]
+                )
     high = axes[1].bits.size
     return xy.reshape(-1, 2 * high, axes[0].size), z.reshape(-1, high, axes[0].size)
 

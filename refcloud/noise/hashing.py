@@ -196,27 +196,33 @@ def _lattice_random(x: Words, y: Words, z: Words, seed: int | None) -> Array:
     if seed is None:
         return _man2003(x, y, z, "plain", DIVISOR)
     low = np.uint64(0xFFFFFFFF)
-    bits = (_hash([x & low, y & low, z & low], seed) >> 33).astype(np.float64)
+    hashed = _hash([x & low, y & low, z & low], seed, upper=True)
+    hashed >>= 33
+    bits = hashed.view(np.int64).astype(np.float64)  # signed words convert faster
     bits *= -1.0 / DIVISOR
     bits += 1.0
     return bits
 
 
-def _hash(words: list[Words], seed: int) -> Words:
-    """Chain the words through the mixer; one that broadcasts is mixed where it is."""
+def _hash(words: list[Words], seed: int, upper: bool = False) -> Words:
+    """Chain the words through the mixer; one that broadcasts is mixed where it is.
+
+    With `upper` the highest 31 bits alone are right.
+    """
     state = _mixed(np.array([(seed + WEYL) & WORD_BITS], dtype=np.uint64))
-    for word in words:
-        state = _mixed((state + WEYL) ^ word)
+    for number, word in enumerate(words, 1):
+        state = _mixed((state + WEYL) ^ word, upper and number == len(words))
     return state
 
 
-def _mixed(h: Words) -> Words:
-    """Mix 64 bits in place, one to one."""
+def _mixed(h: Words, upper: bool = False) -> Words:
+    """Mix 64 bits in place, one to one; the last step leaves the highest 31."""
     high = np.empty_like(h)
     for shift, factor in MIX:
         h ^= np.right_shift(h, shift, out=high)
         h *= factor
-    h ^= np.right_shift(h, LAST_SHIFT, out=high)
+    if not upper:
+        h ^= np.right_shift(h, LAST_SHIFT, out=high)
     return h
 
 

@@ -207,4 +207,7 @@ def _quintic_weight(t: Array) -> Array:
     cube = t * t
     cube *= t
     cube *= weight
-    return np.minimum(cube, 1.0)
+    if np.ndim(cube) == 0:
+        return np.minimum(cube, 1.0)
+    weight.fill(1.0)  # the minimum with an array is quicker than with a number
+    return np.minimum(cube, weight, out=cube)

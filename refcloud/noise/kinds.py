@@ -1,6 +1,6 @@
 """The kinds of noise that octaves can be summed of: one plain table.
 
-Each kind has a function for points in rows and one that adds a grid. Both give values
+Each kind has a function for points in rows and one that fills a grid. Both give values
 in [-1, 1], so that every sum of octaves has the same bound.
 """
 
@@ -16,16 +16,25 @@ from refcloud.conventions import Array
 from refcloud.noise.directions import USUAL
 from refcloud.noise.gradient import How as GradientHow
 from refcloud.noise.gradient import _gradient
-from refcloud.noise.gradient_grid import _fill
+from refcloud.noise.gradient_grid import Layer, _fill
 from refcloud.noise.scattered import PERIOD, Dtype, Numbers
 from refcloud.noise.simplex import WRAP, _simplex
 from refcloud.noise.simplex_grid import simplex_grid
-from refcloud.noise.value import How as ValueHow
 from refcloud.noise.value import _value
 from refcloud.noise.value_grid import _add_grid
+from refcloud.noise.value_table import How as ValueHow
 
 KindName = Literal["value", "gradient", "simplex"]
-Lines = list[Array]  # the coordinates along each axis of a grid
+
+
+@dataclass(frozen=True)
+class Octave:
+    """One octave on a grid: its weight, coordinates in its cells, seed and period."""
+
+    scale: float
+    lines: list[Array]
+    seed: int
+    period: int | None
 
 
 @dataclass(frozen=True)
@@ -42,16 +51,16 @@ class Kind:
         What coordinates are taken modulo.
     points
         Gives noise at finite points (N, n): (columns, seed, period, dtype).
-    add
-        Adds scaled noise on a grid, or its absolute value, to an array:
-        (array, scale, lines, seed, period, absolute).
+    fill
+        Fills an array with the sum of octaves on a grid, one at the least, or of their
+        absolute values: (array, octaves, absolute).
     """
 
     dimensions: tuple[int, ...]
     tiles: bool
     wrap: float
     points: Callable[[Array, int, int | None, Dtype], Numbers]
-    add: Callable[[Numbers, float, Lines, int, int | None, bool], None]
+    fill: Callable[[Numbers, list[Octave], bool], None]
 
 
 def _value_points(
@@ -60,17 +69,12 @@ def _value_points(
     return _value(columns, ValueHow(seed, "quintic", True, period, dtype))
 
 
-def _add_value(
-    out: Numbers,
-    scale: float,
-    lines: Lines,
-    seed: int,
-    period: int | None,
-    absolute: bool,
-) -> None:
-    x, y, z = lines
-    how = ValueHow(seed, "quintic", True, period, _dtype(out))
-    _add_grid(out, scale, (x, y, z), how, absolute)
+def _fill_value(out: Numbers, octaves: list[Octave], absolute: bool) -> None:
+    out[...] = 0.0
+    for octave in octaves:
+        x, y, z = octave.lines
+        how = ValueHow(octave.seed, "quintic", True, octave.period, _dtype(out))
+        _add_grid(out, octave.scale, (x, y, z), how, absolute)
 
 
 def _gradient_points(
@@ -81,20 +85,13 @@ def _gradient_points(
     return _gradient(columns, how)
 
 
-def _add_gradient(
-    out: Numbers,
-    scale: float,
-    lines: Lines,
-    seed: int,
-    period: int | None,
-    absolute: bool,
-) -> None:
-    def add(part: Numbers, values: Numbers) -> None:
-        part += np.abs(values, out=values) if absolute else values
-
-    name = USUAL[len(lines)]
-    how = GradientHow(seed, "quintic", name, period, "mixed", _dtype(out))
-    _fill(out, tuple(lines), how, add, scale)
+def _fill_gradient(out: Numbers, octaves: list[Octave], absolute: bool) -> None:
+    layers = []
+    for octave in octaves:
+        name, period = USUAL[len(octave.lines)], octave.period
+        how = GradientHow(octave.seed, "quintic", name, period, "mixed", _dtype(out))
+        layers.append(Layer(tuple(octave.lines), how, octave.scale))
+    _fill(out, layers, absolute)
 
 
 def _simplex_points(
@@ -104,20 +101,14 @@ def _simplex_points(
     return _simplex(columns, seed, "continuous", "mixed", dtype)
 
 
-def _add_simplex(
-    out: Numbers,
-    scale: float,
-    lines: Lines,
-    seed: int,
-    period: int | None,
-    absolute: bool,
-) -> None:
-    del period  # refused before
-    values = simplex_grid(*lines, seed=seed, dtype=_dtype(out))
-    if absolute:
-        np.abs(values, out=values)
-    values *= scale
-    out += values
+def _fill_simplex(out: Numbers, octaves: list[Octave], absolute: bool) -> None:
+    out[...] = 0.0
+    for octave in octaves:  # a period is refused before
+        values = simplex_grid(*octave.lines, seed=octave.seed, dtype=_dtype(out))
+        if absolute:
+            np.abs(values, out=values)
+        values *= octave.scale
+        out += values
 
 
 def _dtype(out: Numbers) -> Dtype:
@@ -125,9 +116,9 @@ def _dtype(out: Numbers) -> Dtype:
 
 
 KINDS: dict[KindName, Kind] = {
-    "value": Kind((3,), True, PERIOD, _value_points, _add_value),
-    "gradient": Kind((2, 3), True, PERIOD, _gradient_points, _add_gradient),
-    "simplex": Kind((2, 3, 4), False, float(WRAP), _simplex_points, _add_simplex),
+    "value": Kind((3,), True, PERIOD, _value_points, _fill_value),
+    "gradient": Kind((2, 3), True, PERIOD, _gradient_points, _fill_gradient),
+    "simplex": Kind((2, 3, 4), False, float(WRAP), _simplex_points, _fill_simplex),
 }
 
 

@@ -141,8 +141,13 @@ def _joined(axes: Sequence[Bits], seed: int, hash: Hash) -> Bits:
     total = first
     for bits in others:
         total = total + bits
-    high = total >> FIRST
-    total = np.bitwise_xor(total, high)
+    return _finished(total if others else total.copy())
+
+
+def _finished(total: Bits, high: Bits | None = None) -> Bits:
+    """Mix the sum of the axes' words, in place; high is an array to work in."""
+    high = np.right_shift(total, FIRST, out=high)
+    total ^= high
     total *= np.uint32(FACTORS[0])
     total ^= np.right_shift(total, SECOND, out=high)
     total *= np.uint32(FACTORS[1])
@@ -154,8 +159,8 @@ def _choice(bits: Bits, count: int) -> NDArray[np.intp]:
     return _chosen(bits, count).astype(np.intp)
 
 
-def _chosen(bits: Bits, count: int) -> Bits:
-    upper: Bits = bits >> np.uint32(16)
-    upper *= np.uint32(count)
-    upper >>= np.uint32(16)
-    return upper
+def _chosen(bits: Bits, count: int, out: Bits | None = None) -> Bits:
+    bits = np.right_shift(bits, np.uint32(16), out=out)
+    bits *= np.uint32(count)
+    bits >>= np.uint32(16)
+    return bits

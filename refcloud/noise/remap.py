@@ -1,4 +1,13 @@
-"""Remap: numbers carried from one range to another, as document D does with noise."""
+"""Remap: numbers carried from one range to another, as document D does with noise.
+
+Document D names "the scale function described in Fredrik Haggstrom's thesis" for the
+combination of its two noises, and prints no formula; its sky's `scale(y, -1, 1, 0.4,
+0.6)` shows the order of the arguments: value, old range, new range. The thesis
+("Real-time rendering of volumetric clouds", Umeå 2018) is known here from what others
+quote of it: it writes R(v, l0, h0, ln, hn) for the straight line of `remap`, a function
+that Schneider's talk and chapter on the clouds of Horizon Zero Dawn (2015, 2016) call
+Remap. Where l0 = h0 the formula divides by zero (E33).
+"""
 
 from __future__ import annotations
 

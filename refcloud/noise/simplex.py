@@ -21,6 +21,7 @@ from refcloud.noise.scattered import (
     Numbers,
     Places,
     _dimensions,
+    _Room,
     _scattered,
 )
 from refcloud.noise.simplex_corners import (
@@ -30,7 +31,6 @@ from refcloud.noise.simplex_corners import (
     _broadcast,
     _corners,
     _dotted,
-    _Room,
     _skews,
 )
 
@@ -178,7 +178,8 @@ def _simplex(
     for d, slope, kernel in _corners(columns, seed, radius, hash, dtype, room):
         kernel *= kernel
         kernel *= kernel
-        total += np.multiply(_dotted(slope, d, part, products), kernel, out=part)
+        kernel *= _dotted(slope, d, part, products)
+        total += kernel
     return total
 
 

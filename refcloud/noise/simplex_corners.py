@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.noise.directions import SETS, USUAL, Radius
-from refcloud.noise.mixing import Bits, Hash, _axis_bits, _choice, _joined
-from refcloud.noise.scattered import Dtype, Numbers
+from refcloud.noise.mixing import (
+    Bits,
+    Hash,
+    _axis_bits,
+    _chosen,
+    _finished,
+    _joined,
+)
+from refcloud.noise.scattered import Dtype, Numbers, _Room
 
 # A chunk's cells share their hashed lines where an axis has fewer: 16 KiB of them.
 MOST_LINES = 1 << 12
+SPARE = 8  # lines more at both ends: the next chunk's cells reach a little further
 
 Columns = Sequence[Array] | Array  # coordinates by axis
 
@@ -33,24 +41,6 @@ PEAKS: dict[tuple[int, Radius], float] = {
     (4, "continuous"): 0.016410,
     (4, "usual"): 0.037830,
 }
-
-
-class _Room:
-    """Arrays that chunk after chunk is worked out in.
-
-    Memory that is fresh for each chunk costs as much as the work: the system clears
-    its pages.
-    """
-
-    def __init__(self) -> None:
-        self.arrays: dict[str, Numbers] = {}
-
-    def take(self, name: str, shape: tuple[int, ...], dtype: Any) -> Numbers:
-        """Give the array of that name, its numbers as they were left."""
-        array = self.arrays.get(name)
-        if array is None or array.shape != shape or array.dtype != dtype:
-            array = self.arrays[name] = np.empty(shape, dtype)
-        return array
 
 
 def _skews(dimensions: int) -> tuple[float, float]:
@@ -73,10 +63,10 @@ def _corners(
 
     The walk: from a corner to the next it is one step along one axis, the longest not
     yet taken. So offsets and hashed words are not made anew but moved along. Every
-    pass reads and writes arrays of a chunk, which stay in the cache, at 0.2 ns a number
-    in float32. In space, in ns: 8 for the place in float64 (25 passes), 10 for the
-    hashed lines, 12 for the steps (7 passes by 3 axes by 3), 24 for hashes, kernels
-    and dots (30 passes by 4 corners), and 9 for 12 look-ups: 63, of measured 70.
+    pass reads and writes arrays of a chunk, which stay in the cache, at 0.1 ns a number
+    in float32 and 0.2 in float64. In space, in ns: 7 for the place in float64 (25
+    passes), 6 for the hashed lines, 4 for the steps, 16 for hashes, kernels and dots
+    (28 passes by 4 corners), and 6 for 12 look-ups: 39, of measured 45.
     """
     n, shape = len(columns), _broadcast(columns)
     room = room or _Room()
@@ -86,14 +76,15 @@ def _corners(
     _sum(columns, shift)
     shift *= F
     for column, cell in zip(columns, cells, strict=True):
-        np.floor(np.add(column, shift, out=cell), out=cell)
+        np.add(column, shift, out=cell)
+    np.floor(cells, out=cells)
     _sum(cells, shift)
     shift *= G
-    d, first = room.take("d", (n, *shape), dtype), room.take("first", shape, float)
+    start, first = room.take("d0", (n, *shape), dtype), room.take("first", shape, float)
     for k, (column, cell) in enumerate(zip(columns, cells, strict=True)):
         np.subtract(column, cell, out=first)
         first += shift
-        d[k] = first
+        start[k] = first
     # 2. Rank the axes, the longest first: each comparison moves one of two back.
     rank = room.take("rank", (n, *shape), np.uint8)
     taken = room.take("taken", rank.shape, bool)
@@ -101,61 +92,124 @@ def _corners(
     rank[...] = 0
     for i in range(n):
         for j in range(i + 1, n):
-            rank[j] += np.greater_equal(d[i], d[j], out=flag).view(np.uint8)
+            rank[j] += np.greater_equal(start[i], start[j], out=flag).view(np.uint8)
             rank[i] += np.logical_not(flag, out=flag).view(np.uint8)
-    # 3. Hash the lines through the corner, and how the hash changes one line on.
-    words, ahead = _lines(cells, seed, hash, room)
+    # 3. Choose the gradients of all corners.
     rows = (SETS[USUAL[n]].T / PEAKS[n, radius]).astype(dtype)
-    slope = room.take("slope", (n, *shape), dtype)
+    picks = _picks(cells, rank, seed, hash, rows.shape[1], room)
+    d, slope = (room.take(name, (n, *shape), dtype) for name in ("d", "slope"))
     kernel, nothing = room.take("kernel", shape, dtype), room.take("zero", shape, dtype)
     nothing[...] = 0.0  # the maximum with an array is quicker than with a number
-    number, whole = (room.take(str(t), d.shape, t) for t in (dtype, words.dtype))
+    number, pick = (
+        room.take("number", d.shape, dtype),
+        room.take("pick", shape, np.intp),
+    )
     for corner in range(n + 1):
         # 4. Step along the longest axis left. Booleans are cast before they are
-        # multiplied: otherwise numpy casts them through small buffers.
-        if corner:
-            np.equal(rank, corner - 1, out=taken)
-            number[...] = taken
+        # subtracted: otherwise numpy casts them through small buffers.
+        if corner == 0:
+            d[...] = start
+        elif corner == n:
+            np.subtract(start, 1.0 - n * G, out=d)
+        else:
+            number[...] = np.equal(rank, corner - 1, out=taken)
             d += G
             d -= number
-            whole[...] = taken
-            whole *= ahead
-            words += whole
         # 5. Look up the gradient, and see how far the corner's kernel reaches.
-        pick = _choice(_joined(list(words), seed, hash), rows.shape[1])
+        pick[...] = picks[corner]
         rows.take(pick, axis=1, mode="wrap", out=slope)
         np.subtract(SQUARED[radius], _dotted(d, d, kernel, number), out=kernel)
         yield d, slope, np.maximum(kernel, nothing, out=kernel)
 
 
+def _picks(
+    cells: Array,
+    rank: NDArray[np.uint8],
+    seed: int,
+    hash: Hash,
+    count: int,
+    room: _Room,
+) -> NDArray[np.uint8]:
+    """Choose one of `count` gradients for each corner, shape (N + 1, ...).
+
+    From a corner to the next the word of one axis changes to that of its next line. The
+    mixed hash adds the axes' words before it mixes them: the sum is all that it needs,
+    and those of all corners are mixed together. The cells are overwritten.
+    """
+    n, shape = len(cells), cells.shape[1:]
+    words, ahead = _lines(cells, seed, hash, room)
+    taken = room.take("taken", rank.shape, bool)
+    change = room.take("change", words.shape, np.uint32)
+    picks = room.take("picks", (n + 1, *shape), np.uint8)
+    if hash == "table":
+        for corner in range(n + 1):
+            np.less(rank, corner, out=taken)
+            stepped = words + taken * ahead
+            picks[corner] = _chosen(_joined(list(stepped), seed, hash), count)
+        return picks
+    sums = room.take("sums", (n + 1, *shape), np.uint32)
+    _sum(words, sums[0])
+    for corner in range(1, n):
+        change[...] = np.equal(rank, corner - 1, out=taken)
+        change *= ahead
+        _sum(change, sums[corner])
+        sums[corner] += sums[corner - 1]
+    _sum(ahead, sums[n])
+    sums[n] += sums[0]
+    bits = _finished(sums, room.take("high", sums.shape, np.uint32))
+    picks[...] = _chosen(bits, count, out=bits)
+    return picks
+
+
 def _lines(cells: Array, seed: int, hash: Hash, room: _Room) -> tuple[Bits, Bits]:
     """Hash the lattice lines of cells by axis, and give what to add for the next line.
 
-    Cells close together share few lines: those are hashed once, and looked up. The
-    cells are overwritten.
+    Cells close together share few lines: those are hashed once for all chunks, and
+    looked up. The cells are overwritten.
     """
     words, ahead = (room.take(s, cells.shape, np.uint32) for s in ("words", "ahead"))
-    index = room.take("index", cells.shape[1:], np.intp)
-    for k, cell in enumerate(cells):
-        low, high = int(cell.min()), int(cell.max())
-        if high - low < MOST_LINES:
-            bits = _axis_bits(np.arange(low, high + 2), k, seed, hash)
-            cell -= low
-            index[...] = cell
-            bits.take(index, mode="wrap", out=words[k])
-            np.diff(bits).take(index, mode="wrap", out=ahead[k])
-        else:
+    spread = tuple(range(1, cells.ndim))
+    low, high = cells.min(axis=spread), cells.max(axis=spread)
+    if (high - low).max() < MOST_LINES:
+        low = _hash_lines(low, high, seed, hash, room)
+        cells -= low.reshape(-1, *[1] * len(spread))
+        index = room.take("index", cells.shape, np.intp)
+        index[...] = cells
+        for k, (bits, change) in enumerate(room.lines):
+            bits.take(index[k], mode="wrap", out=words[k])
+            change.take(index[k], mode="wrap", out=ahead[k])
+    else:
+        for k, cell in enumerate(cells):
             at = cell.astype(np.int64)
             words[k] = _axis_bits(at, k, seed, hash)
             ahead[k] = _axis_bits(at + 1, k, seed, hash) - words[k]
     return words, ahead
 
 
+def _hash_lines(low: Array, high: Array, seed: int, hash: Hash, room: _Room) -> Array:
+    """Keep the hashed lines from low to high in the room, and say where they begin."""
+    if room.lines and (low >= room.ends[0]).all() and (high <= room.ends[1]).all():
+        return room.ends[0]
+    low, high = low - SPARE, high + SPARE
+    if room.lines:
+        wide = np.minimum(low, room.ends[0]), np.maximum(high, room.ends[1])
+        # Places that wander off leave their first lines behind.
+        low, high = wide if (wide[1] - wide[0]).max() < 2 * MOST_LINES else (low, high)
+    room.ends = low, high
+    room.lines = []
+    for k, (first, last) in enumerate(zip(low, high, strict=True)):
+        bits = _axis_bits(np.arange(int(first), int(last) + 2), k, seed, hash)
+        room.lines.append((bits, np.diff(bits)))
+    return low
+
+
 def _broadcast(columns: Columns) -> tuple[int, ...]:
+    if isinstance(columns, np.ndarray):
+        return columns.shape[1:]
     return np.broadcast_shapes(*(column.shape for column in columns))
 
 
-def _sum(columns: Columns, out: Array) -> None:
+def _sum(columns: Columns | Bits, out: Numbers) -> None:
     """Add the axes' arrays, which broadcast."""
     np.add(columns[0], columns[1], out=out)
     for column in columns[2:]:

@@ -13,9 +13,10 @@ from refcloud.checking import checked
 from refcloud.conventions import Array, Seed, Shape
 from refcloud.noise.directions import Radius
 from refcloud.noise.mixing import Hash
-from refcloud.noise.scattered import CHUNK, Dtype, Numbers
+from refcloud.noise.scattered import Dtype, Numbers, _chunk, _Room
 from refcloud.noise.simplex import WRAP, _simplex
-from refcloud.noise.simplex_corners import PEAKS, _Room
+from refcloud.noise.simplex import _literal as _pointwise
+from refcloud.noise.simplex_corners import PEAKS
 from refcloud.noise.simplex_phases import _on_blocks, _regular
 from refcloud.refusal import complaint
 
@@ -81,6 +82,12 @@ def simplex_grid(
     return _by_rows(axes, seed, radius, hash, dtype).reshape(shape)
 
 
+def _literal(axes: list[Array], seed: int, radius: Radius) -> Array:
+    """Give simplex noise of every place of a grid, as its formula says it."""
+    mesh = np.meshgrid(*axes[::-1], indexing="ij")
+    return _pointwise(np.stack(mesh[::-1], axis=-1), seed, radius)
+
+
 def _by_rows(
     axes: list[Array], seed: int, radius: Radius, hash: Hash, dtype: Dtype
 ) -> Numbers:
@@ -88,7 +95,7 @@ def _by_rows(
     x, *others = axes
     shape = [axis.size for axis in others[::-1]]
     out = np.empty((int(np.prod(shape)), x.size), dtype)
-    step, room = max(1, CHUNK // max(1, x.size)), _Room()
+    step, room = max(1, _chunk(dtype) // max(1, x.size)), _Room()
     for first in range(0, len(out) if x.size else 0, step):
         rows = np.arange(first, min(first + step, len(out)))
         places = np.unravel_index(rows, shape)[::-1]  # of y, z, w

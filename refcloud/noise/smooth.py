@@ -8,6 +8,7 @@ it to its right one: the same noise, one cell along. It calls the sum of octaves
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Annotated, Any, Literal
 
@@ -16,9 +17,9 @@ from numpy.typing import NDArray
 
 from refcloud.checking import checked, complaint
 from refcloud.conventions import Array, MayBeNotFinite, Range, Seed, Shape
-from refcloud.noise.fractal import octave_frame
 from refcloud.noise.hashing import uniform
 from refcloud.noise.lattice import PERIOD, Cells
+from refcloud.noise.octaves import octave_frame
 from refcloud.noise.worley_cells import DType, Reals, _split, _wrapped
 
 Octaves = Annotated[int, Range(1, 32)]
@@ -163,6 +164,21 @@ def smooth_grid(
             repeat = None if period is None else period << i
             _add_grid(out, 2.0**-i, placed, own, repeat)
     return _finished(out, octaves, normalize).astype(dtype, copy=False)
+
+
+def _literal(points: Array, seed: int, octaves: int) -> Array:
+    """Give smooth noise as its formula says it: corner by corner, octave by octave."""
+    total: Array = np.zeros(points.shape[:-1])
+    for i in range(octaves):
+        own, shift = octave_frame(i, seed=seed)
+        places = points * 2.0**i + shift[: points.shape[-1]]
+        cells = np.floor(places)
+        for corner in itertools.product((0, 1), repeat=points.shape[-1]):
+            weight = np.prod(1.0 - np.abs(places - cells - corner), axis=-1)
+            lattice = np.moveaxis((cells + corner).astype(np.int64), -1, 0)
+            words = np.mod(lattice, int(PERIOD))
+            total += 2.0**-i * weight * uniform(*words, seed=own or 0)
+    return total / (2.0 - 2.0 ** (1 - octaves))
 
 
 def _placed(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated
 
 import numpy as np
@@ -9,10 +10,11 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed, Shape
 from refcloud.noise.gradient import Period
-from refcloud.noise.lattice import SLAB, AxisTaps, Cells, _axis, _block
+from refcloud.noise.hashing import lattice_random
+from refcloud.noise.lattice import SLAB, AxisTaps, Cells, _axis, _block, smoothed
 from refcloud.noise.scattered import Dtype, Numbers, _wrapped
-from refcloud.noise.value import MOST_LATTICE, How, _weighted
-from refcloud.noise.weights import Interpolant
+from refcloud.noise.value_table import MOST_LATTICE, How
+from refcloud.noise.weights import Interpolant, _taps
 
 Axes = tuple[Array, Array, Array]  # x, y and z
 
@@ -66,6 +68,27 @@ def value_grid(
     return out
 
 
+def _literal(
+    axes: Axes, seed: int | None, interpolant: Interpolant, smooth: bool
+) -> Array:
+    """Give value noise as one dense matrix of weights along each axis."""
+    matrices, lines = [], []
+    for axis in axes:
+        cells = np.floor(axis).astype(np.int64)
+        weights, offsets = _taps(interpolant, axis - cells)
+        line = np.unique(np.add.outer(offsets, cells))
+        dense: Array = np.zeros((axis.size, line.size))
+        for weight, offset in zip(weights, offsets, strict=True):
+            dense[np.arange(axis.size), np.searchsorted(line, cells + offset)] = weight
+        matrices.append(dense)
+        lines.append(line)
+    a, b, c = lines
+    f = (smoothed if smooth else lattice_random)(
+        a, b[:, None], c[:, None, None], seed=seed
+    )
+    return np.einsum("ia,jb,kc,cba->kji", *matrices, f, optimize=True)
+
+
 def _add_grid(
     out: Numbers, amplitude: float, axes: Axes, how: How, absolute: bool = False
 ) -> None:
@@ -97,8 +120,7 @@ def _add_part(
             _add_part(out[where], amplitude, fewer, how, absolute)
         return
     lines = (_wrapped(axis.lines, how.period) for axis in axes)
-    f = _block(*lines, seed=how.seed, smooth=how.smooth)
-    f = f.astype(how.dtype, copy=False)
+    f = _block(*lines, seed=how.seed, smooth=how.smooth, dtype=how.dtype)
     # Interpolate along x and y, where there are still few values.
     f = _contracted(f, x.weights, x.index, axis=2)
     f = _contracted(f, y.weights, y.index, axis=1)
@@ -120,3 +142,11 @@ def _contracted(f: Array, weights: Array, index: Cells, axis: int) -> Array:
         (w.reshape(along) for w in weights),
         (np.take(f, i, axis=axis, mode="clip") for i in index),
     )
+
+
+def _weighted(weights: Iterable[Array], values: Iterable[Array]) -> Array:
+    """Sum weight times value, from the first tap to the last."""
+    first, *others = (w * v for w, v in zip(weights, values, strict=True))
+    for other in others:
+        first += other
+    return first

@@ -81,3 +81,8 @@ def _taps(
     else:
         w = t
     return (1.0 - w, w), TWO
+
+
+def _reach(interpolant: Interpolant) -> tuple[int, ...]:
+    """Give the neighbours' offsets alone."""
+    return FOUR if interpolant in ("cubic", "catmull_rom") else TWO

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Annotated, Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from refcloud.noise.worley_cells import (
     Scale,
     Search,
     _scaled,
+    worley_points,
 )
 from refcloud.noise.worley_search import _scattered
 
@@ -84,3 +86,14 @@ def worley(
         flat, seed, period, feature == "F2", search == "exact", np.dtype(dtype)
     )
     return _scaled(found, feature, n, normalize).reshape(points.shape[:-1])[()]
+
+
+def _literal(points: Array, seed: int, period: int | None, feature: Feature) -> Array:
+    """Give Worley noise as its formula says it: every cell that can count, at once."""
+    cells = np.floor(points).astype(np.int64)
+    squares = []
+    for step in itertools.product(range(-2, 3), repeat=points.shape[-1]):
+        near = cells + step
+        places = worley_points(*np.moveaxis(near, -1, 0), seed=seed, period=period)
+        squares.append(np.sum((near + places - points) ** 2, axis=-1))
+    return np.sqrt(np.sort(squares, axis=0)[0 if feature == "F1" else 1])

@@ -9,6 +9,7 @@ beyond the neighbours are looked at again, one by one.
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Annotated
 
@@ -26,6 +27,7 @@ from refcloud.noise.worley_cells import (
     _offsets,
     _scaled,
     _wrapped,
+    worley_points,
 )
 from refcloud.noise.worley_ring import Doubtful, _face_squared, _joined, _meet_ring
 from refcloud.noise.worley_runs import _blocks, _Runs, _runs
@@ -102,6 +104,24 @@ def worley_grid(
             _meet_ring(far, seed, period)
             out[tuple(far.place[::-1])] = np.sqrt(far.found[-1])
     return _scaled(out, feature, len(axes), normalize)
+
+
+def _literal(
+    axes: list[Array], seed: int, period: int | None, feature: Feature
+) -> Array:
+    """Give Worley noise of a grid: a sum of squares for every cell that can count."""
+    # Along x, y (and z) the places stand on the last axis, the one before, and so on.
+    lines = [axis.reshape(-1, *[1] * k) for k, axis in enumerate(axes)]
+    squares = []
+    for step in itertools.product(range(-2, 3), repeat=len(axes)):
+        near = [
+            np.floor(line).astype(np.int64) + s
+            for line, s in zip(lines, step, strict=True)
+        ]
+        places = worley_points(*near, seed=seed, period=period)
+        apart = [c + places[..., k] - lines[k] for k, c in enumerate(near)]
+        squares.append(np.sum(np.square(apart), axis=0))
+    return np.sqrt(np.sort(squares, axis=0)[0 if feature == "F1" else 1])
 
 
 def _fill(

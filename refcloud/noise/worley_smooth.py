@@ -5,6 +5,17 @@ The lumps end a cell from their points: what is farther, a sample in a thousand,
 far (the one place where distances are cut at 1, see `refcloud.noise.worley_bound`).
 The lower end of the old range is s - 1, at most 0, and the upper is 1: no range is ever
 empty (E33), and [0, 1] stays within [0, 1].
+
+What is from where. Document D: the two noises, Worley as the scaffold that smooth noise
+populates, and that the scale function of Häggström's thesis combines them; not which of
+them is the value and which an end of the range. The thesis, as others quote it, has the
+form R(v, f - 1, 1, 0, 1) with v its coarse channel and f the weighted sum of its finer
+ones (Perlin-Worley noise, and 5/8, 1/4 and 1/8 of three octaves of Worley noise): where
+f is 1 the coarse noise stays v, where f is 0 it becomes (1 + v) / 2. The reading here
+is that form with D's noises in it: the scaffold is the coarse one, v = w, and smooth
+noise, whose octaves weigh 2^-i over their sum, is the fine one, f = s. That the
+scaffold's distance is cut at one cell, and that the finer noise begins with two cells
+to each of the scaffold, are choices of refcloud.
 """
 
 from __future__ import annotations
@@ -16,10 +27,11 @@ from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, MayBeNotFinite, Range, Seed, Shape
-from refcloud.noise.fractal import octave_bound, octave_frame
 from refcloud.noise.gradient import gradient
 from refcloud.noise.gradient_grid import gradient_grid
 from refcloud.noise.lattice import PERIOD
+from refcloud.noise.octaves import octave_bound, octave_frame
+from refcloud.noise.remap import remap
 from refcloud.noise.smooth import smooth, smooth_grid
 from refcloud.noise.worley import worley
 from refcloud.noise.worley_cells import DType, Reals
@@ -151,6 +163,15 @@ def worley_smooth_grid(
             s += g * np.dtype(dtype).type(2.0**-i)
         s = _unsigned(s, octaves)
     return _filled(1 - w, s)
+
+
+def _literal(points: Array, seed: int, period: int | None, octaves: int) -> Array:
+    """Give the noise as its formula says it."""
+    w = 1.0 - np.minimum(worley(points, seed=seed, period=period), 1.0)
+    finer = None if period is None else FINER * period
+    s = smooth(points * FINER, seed=seed, period=finer, octaves=octaves)
+    one, zero = np.ones(1), np.zeros(1)
+    return remap(w, s - 1.0, one, zero, one)
 
 
 def _finer(period: int | None, octave: int = 0) -> int | None:

@@ -211,6 +211,7 @@ def octave_sum(
     interpolant: str = "cosine",
     normalize: str = "clip",
     absolute: bool = True,
+    period: int | None = None,
     shown: int | None = None,
 ) -> float:
     """Give the paper's fractal noise at one point (eq 1), of the octaves shown."""
@@ -219,11 +220,14 @@ def octave_sum(
     total = 0.0
     for i in range(octaves if shown is None else shown):
         own, shift = octave_frame(i, seed=seed)
+        repeat = None if period is None else period << i
+        wrap = repeat or PERIOD
         place = [
-            math.fmod(math.fmod(c, PERIOD) * 2**i, PERIOD) + s
+            math.fmod(math.fmod(c, wrap) * 2**i, wrap) + s
             for c, s in zip(point, shift, strict=True)
         ]
-        total += persistence**i * value(place, seed=own, interpolant=interpolant)
+        octave = value(place, seed=own, interpolant=interpolant, period=repeat)
+        total += persistence**i * octave
     if absolute:
         total = abs(total)
     if normalize == "clip":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 
 import numpy as np
@@ -52,6 +53,25 @@ def test_grid_equals_points_within_the_bound_in_both_precisions(data, sums) -> N
         assert single.dtype == np.float32
         # Worst seen of a single octave 1.7e-6, of three summed.
         np.testing.assert_allclose(single, exact, rtol=0, atol=2e-5)
+
+
+@settings(max_examples=25)
+@given(st.data(), st.sampled_from(SUMS), st.integers(1, 5))
+def test_parts_and_tiles_of_a_sum_do_not_show(data, sums, tile: int) -> None:
+    # Octaves that ascend after their shifts share tiles, others do not.
+    _, each, how = drawn(data.draw)
+    how |= {"kind": "gradient", "time": None}
+    lines = [sorted(data.draw(st.lists(each, max_size=6))) for _ in range(3)]
+    whole, _ = sums[1](*lines, **how)
+    with pytest.MonkeyPatch.context() as patch:
+        grids, bands = (
+            importlib.import_module(f"refcloud.noise.{name}")
+            for name in ("gradient_grid", "bands")
+        )
+        patch.setattr(grids, "MOST_BLENDED", 50)
+        patch.setattr(bands, "TILE", tile)
+        parts, _ = sums[1](*lines, **how)
+    np.testing.assert_allclose(parts, whole, rtol=0, atol=SAME)
 
 
 @pytest.mark.parametrize("sums", SUMS)

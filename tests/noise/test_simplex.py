@@ -223,7 +223,6 @@ def test_chunks_do_not_show(n: int, how, data, chunk: int) -> None:
     whole = simplex(at, **how)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module("scattered"), "CHUNK", chunk)
-        patch.setattr(module("simplex_grid"), "CHUNK", chunk)
         np.testing.assert_array_equal(simplex(at, **how), whole)
         lines = at[:2].T
         parts = simplex_grid(*lines, **how)

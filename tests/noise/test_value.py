@@ -192,20 +192,22 @@ def test_chunks_do_not_show(places, how, chunk, hashed_chunk) -> None:
         patch.setattr(module("scattered"), "CHUNK", chunk)
         patch.setattr(module("value"), "HASHED_CHUNK", hashed_chunk)
         np.testing.assert_array_equal(value(array, **how), whole)
-        patch.setattr(module("value"), "MOST_LATTICE", 0)
+        patch.setattr(module("value_table"), "MOST_LATTICE", 0)
         np.testing.assert_array_equal(value(array, **how), whole)
 
 
-@settings(max_examples=25)
-@given(ways, st.sampled_from([0.0, -1.5, PERIOD - 3.0, 3.0 - PERIOD]))
-def test_the_box_of_close_points_does_not_show(how, corner) -> None:
-    close = corner + 3.0 * uniform(np.arange(300)[:, None], np.arange(3), seed=1)
-    if how["interpolant"] == "cosine":
-        how["interpolant"] = "quintic"
-    boxed = value(close, **how)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(module("value"), "MOST_LATTICE", 0)
-        np.testing.assert_array_equal(value(close, **how), boxed)
+@settings(max_examples=50)
+@given(
+    seeds_or_none,
+    st.sampled_from(INTERPOLANTS),
+    st.booleans(),
+    st.sampled_from([0.0, -1.5, 1e6, -1e9]),
+)
+def test_the_readable_form_is_the_same_noise(seed, name, smooth, corner) -> None:
+    at = corner + 3.0 * uniform(np.arange(200)[:, None], np.arange(3), seed=2)
+    literal = module("value")._literal(at, seed, name, smooth)
+    noise = value(at, seed=seed, interpolant=name, smooth=smooth)
+    np.testing.assert_allclose(noise, literal, rtol=0, atol=SAME)
 
 
 @settings(max_examples=25)

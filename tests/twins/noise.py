@@ -186,6 +186,7 @@ def drawn_octaves(draw: Draw) -> dict:
         "interpolant": draw(st.sampled_from(INTERPOLANTS)),
         "normalize": draw(st.sampled_from(["clip", "bound", "none"])),
         "absolute": draw(st.booleans()),
+        "period": draw(st.none() | st.integers(1, 9)),
     }
 
 
