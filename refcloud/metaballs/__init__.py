@@ -16,9 +16,11 @@ from refcloud.metaballs.kernels import (
 )
 from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
 from refcloud.metaballs.nonnegative import non_negative_least_squares
+from refcloud.metaballs.orthogonal import orthogonal_least_squares
 from refcloud.metaballs.placement import placed
 from refcloud.metaballs.prune import prune
 from refcloud.metaballs.spread import rms_radii
+from refcloud.metaballs.subtract import place_and_subtract
 from refcloud.metaballs.weights import depth
 
 __all__ = [
@@ -41,6 +43,8 @@ __all__ = [
     "load_metaballs",
     "non_negative_least_squares",
     "normalisation",
+    "orthogonal_least_squares",
+    "place_and_subtract",
     "placed",
     "printed_wyvill",
     "profile",
