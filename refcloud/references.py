@@ -16,7 +16,9 @@ DOCUMENTS = {
 }
 
 PIECES = {
-    "A13": "M: centres taken at uniform or random voxels",
+    "A12": "M: levels of detail of 1000, 100 and 30 balls",
+    "A13": "M: centres taken at uniform or random voxels, by orthogonal least squares,"
+    " or by placing and subtracting",
     "F01": "M: the framebuffer is cleared to white",
     "F02": "M: glBlendFunc",
     "F03": "M: the mean of an area that is read back",

@@ -15,6 +15,8 @@ from refcloud.metaballs.kernels import (
     wyvill,
 )
 from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
+from refcloud.metaballs.levels import Levels, choose_level, levels_of_detail
+from refcloud.metaballs.levels_file import load_levels, save_levels
 from refcloud.metaballs.nonnegative import non_negative_least_squares
 from refcloud.metaballs.orthogonal import orthogonal_least_squares
 from refcloud.metaballs.placement import placed
@@ -26,10 +28,12 @@ from refcloud.metaballs.weights import depth
 __all__ = [
     "Clusters",
     "FitErrors",
+    "Levels",
     "Metaballs",
     "adaptive_kmeans",
     "approximate",
     "axis_depth",
+    "choose_level",
     "chord",
     "depth",
     "errors_of_fit",
@@ -39,7 +43,9 @@ __all__ = [
     "gradient_descent",
     "integral",
     "largest_eigenvalue",
+    "levels_of_detail",
     "lloyd",
+    "load_levels",
     "load_metaballs",
     "non_negative_least_squares",
     "normalisation",
@@ -50,6 +56,7 @@ __all__ = [
     "profile",
     "prune",
     "rms_radii",
+    "save_levels",
     "save_metaballs",
     "voxel_balls",
     "wyvill",

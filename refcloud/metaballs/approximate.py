@@ -108,7 +108,7 @@ def approximate(
     refine_steps
         Number of Levenberg-Marquardt steps, on the voxels themselves for "standard".
         None is 5 for "standard", or 8 on each coarser grid that serves balls many
-        voxels wide and 1 on the voxels; for "full" 20, or 40 on a coarser grid.
+        voxels wide and 1 on the voxels; for "full" 20, or 24 on a coarser grid.
     least_radius
         Smallest radius of a ball, in voxels. Below 1 balls fit samples, not a field.
         Not in "man".
@@ -139,15 +139,22 @@ def approximate(
     work = prepare(grid)
     if work is None:
         return Metaballs(np.zeros((0, 3)), np.zeros(0), np.zeros(0), kernel)
-    watch = watcher(kernel, observe)
     settings = Settings(
-        kernel, seed, overlap, rim, rim_depth, rounds, refine_steps, least_radius, watch
+        kernel,
+        seed,
+        watcher(kernel, observe),
+        overlap,
+        rim,
+        rim_depth,
+        rounds,
+        refine_steps,
+        least_radius,
     )
     most = work.voxels
 
     def fitted(wanted: int) -> Metaballs:
         fit = METHODS[method](work, min(wanted, most), settings).fit
-        return as_balls(work, fit, kernel, _skipped(work, fit, wanted))
+        return as_balls(work, fit, kernel, skipped_of(work, fit, wanted))
 
     def attempt(wanted: int) -> tuple[float, Metaballs]:
         balls = fitted(wanted)
@@ -190,7 +197,7 @@ def as_balls(
     )
 
 
-def _skipped(work: Work, fit: Fit, count: int) -> tuple[Skipped, ...]:
+def skipped_of(work: Work, fit: Fit, count: int) -> tuple[Skipped, ...]:
     """Report balls that were asked for and are not there."""
     rows = []
     missing = count - len(fit.heights)

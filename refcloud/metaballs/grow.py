@@ -15,9 +15,12 @@ from refcloud.metaballs.solve import ROUGH, with_heights
 
 # Shares of the balls that are there after the clustering and after each growth.
 SEEDED, SHARES = 0.4, (0.6, 0.8, 1.0)
+# Few balls end in one of a few arrangements, where growth may be stuck: up to so many,
+# clusters of all balls are refined as well, and the better fit is kept.
+FEW = 300
 # Levenberg-Marquardt steps: before each growth; after the last one, on the voxels or on
 # a coarser grid; and on the voxels after a coarser grid.
-STAGE_STEPS, END_STEPS, COARSE_STEPS, LAST_STEPS = 4, 20, 40, 4
+STAGE_STEPS, END_STEPS, COARSE_STEPS, LAST_STEPS = 4, 20, 24, 4
 
 
 def full(work: Work, count: int, settings: Settings) -> Listed:
@@ -28,13 +31,7 @@ def full(work: Work, count: int, settings: Settings) -> Listed:
     grid = grids_for(work, count)[0]
     state = _started(work, grid, seeds, settings)
     settings.watch("heights", grid, state.fit)
-    state = grown(grid, state, count, settings)
-    if grid is not work:
-        # Few balls end in one of a few arrangements. Steps on a coarser grid cost so
-        # little that the clusters of all balls may compete.
-        rival = _refined(grid, _started(work, grid, count, settings), settings)
-        state = min(state, rival, key=lambda each: each.cost)
-    return ended(work, grid, state, settings)
+    return ended(work, grid, state, count, settings)
 
 
 def _started(work: Work, grid: Work, count: int, settings: Settings) -> Listed:
@@ -52,10 +49,11 @@ def grown(grid: Work, state: Listed, count: int, settings: Settings) -> Listed:
     # 2. Grow: refine what is there, then put balls where most is missing.
     present = len(state.fit.radii)
     for share in (s for s in SHARES if s * count > present):
+        # Balls of height 0 are not there: others take their place.
         state = refine(
             grid, state, settings.kernel, steps=STAGE_STEPS, least_radius=least
         )
-        missing = round(share * count) - len(state.fit.radii)
+        missing = round(share * count) - int(np.count_nonzero(state.fit.heights))
         if missing > 0:
             fit = _joined(grid, state, finder, missing)
             state = with_heights(grid, fit, settings.kernel, optimal=ROUGH)
@@ -73,9 +71,14 @@ def _refined(grid: Work, state: Listed, settings: Settings) -> Listed:
     return refine(grid, state, settings.kernel, steps=steps, least_radius=least)
 
 
-def ended(work: Work, grid: Work, state: Listed, settings: Settings) -> Listed:
-    """End a fit that was made on a grid on the voxels themselves."""
-    kernel = settings.kernel
+def ended(
+    work: Work, grid: Work, state: Listed, count: int, settings: Settings
+) -> Listed:
+    """Grow a fit on a grid to `count` balls, and end on the voxels themselves."""
+    state, kernel = grown(grid, state, count, settings), settings.kernel
+    if count <= FEW:
+        rival = _refined(grid, _started(work, grid, count, settings), settings)
+        state = min(state, rival, key=lambda each: each.cost)
     if grid is not work:
         state = listed(work, moved(state.fit, grid, work), kernel)
         chosen = settings.refine_steps
@@ -94,9 +97,9 @@ def _joined(grid: Work, state: Listed, finder: Correlator, missing: int) -> Fit:
     )
     residual = state.residual.reshape(state.pairs.shape)[inside]
     found = finder.peaks(residual, missing)
-    old = state.fit
+    old, kept = state.fit, state.fit.heights > 0.0
     return Fit(
-        np.concatenate([old.centers, found.cells * grid.edges]),
-        np.concatenate([old.radii, found.radii]),
-        np.concatenate([old.heights, found.heights]),
+        np.concatenate([old.centers[kept], found.cells * grid.edges]),
+        np.concatenate([old.radii[kept], found.radii]),
+        np.concatenate([old.heights[kept], found.heights]),
     )

@@ -27,10 +27,10 @@ class Settings:
 
     kernel: Kernel
     seed: int
-    overlap: float | None
-    rim: float | None
-    rim_depth: float
-    rounds: int
-    refine_steps: int | None
-    least_radius: float
     watch: Watch
+    overlap: float | None = None
+    rim: float | None = None
+    rim_depth: float = 1.5
+    rounds: int = 10
+    refine_steps: int | None = None
+    least_radius: float = 1.1

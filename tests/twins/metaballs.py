@@ -16,6 +16,10 @@ from twins import twin
 COMPOSED = "composed of functions that have rows; judged by its error, like any fit"
 WITHOUT = {
     "refcloud.metaballs.approximate.approximate": COMPOSED,
+    "refcloud.metaballs.levels.levels_of_detail": COMPOSED,
+    "refcloud.metaballs.levels.choose_level": "looks a row up; judged by pictures",
+    "refcloud.metaballs.levels_file.save_levels": "writes a file",
+    "refcloud.metaballs.levels_file.load_levels": "reads a file",
     "refcloud.metaballs.file.save_metaballs": "writes a file",
     "refcloud.metaballs.file.load_metaballs": "reads a file",
 }
