@@ -71,6 +71,8 @@ PIECES = {
     "W04": "M: the cloud-map file",
     "W05": "M: the cloud file and the programs' parameters",
     "W12": "M, S, C: the same seed gives the same picture",
+    "X03": "M: 11,000 voxels as 1000, 100 and 30 balls",
+    "X09": "M: future work: balls without voxels in between",
 }
 
 # Number: (what is printed or left open, what refcloud does).

@@ -2,6 +2,7 @@
 
 from refcloud.metaballs.approximate import approximate
 from refcloud.metaballs.balls import Metaballs, voxel_balls
+from refcloud.metaballs.direct import direct_metaballs
 from refcloud.metaballs.errors import FitErrors, errors_of_fit
 from refcloud.metaballs.field import field, field_grid
 from refcloud.metaballs.file import load_metaballs, save_metaballs
@@ -36,6 +37,7 @@ __all__ = [
     "choose_level",
     "chord",
     "depth",
+    "direct_metaballs",
     "errors_of_fit",
     "field",
     "field_grid",

@@ -225,7 +225,9 @@ def covered_share(balls: Metaballs, camera: Camera | OrthographicCamera) -> floa
     if isinstance(camera, Camera) and not (depth > 0.0).all():
         # A box around the eye may cover all; one behind it covers nothing.
         return 1.0 if (depth > 0.0).any() else 0.0
-    width, height = float(camera.width), float(camera.height)
-    across = np.clip(x, 0.0, width)
-    down = np.clip(y, 0.0, height)
-    return float(np.ptp(across) / width * np.ptp(down) / height)
+    # A pixel is drawn whole where the box reaches its middle: half a pixel more.
+    across, down = (
+        max(0.0, min(float(at.max()) + 0.5, size) - max(float(at.min()) - 0.5, 0.0))
+        for at, size in ((x, camera.width), (y, camera.height))
+    )
+    return across * down / (camera.width * camera.height)

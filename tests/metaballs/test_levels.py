@@ -188,6 +188,6 @@ def test_the_share_of_a_picture() -> None:
     flat = OrthographicCamera(
         [0, 0, 5], [0, 0, 0], height_of_view=8.0, width=40, height=30
     )
-    assert covered_share(ball, flat) == pytest.approx(1 / 4 * 6 / 32)
-    far = [share([0, 0, d]) for d in (5.0, 10.0, 20.0, 1e6)]
+    assert covered_share(ball, flat) == pytest.approx((7.5 + 1) * (7.5 + 1) / 1200)
+    far = [share([0, 0, d]) for d in (5.0, 10.0, 20.0, 50.0)]
     assert all(a > b for a, b in pairwise(far))

@@ -16,6 +16,7 @@ from twins import twin
 COMPOSED = "composed of functions that have rows; judged by its error, like any fit"
 WITHOUT = {
     "refcloud.metaballs.approximate.approximate": COMPOSED,
+    "refcloud.metaballs.direct.direct_metaballs": COMPOSED,
     "refcloud.metaballs.levels.levels_of_detail": COMPOSED,
     "refcloud.metaballs.levels.choose_level": "looks a row up; judged by pictures",
     "refcloud.metaballs.levels_file.save_levels": "writes a file",
