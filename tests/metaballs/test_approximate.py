@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from twins.metaballs import kernels, seeds
 
+import refcloud
 from refcloud.cloudmap.voxels import VoxelGrid
 from refcloud.metaballs import (
     Metaballs,
@@ -277,3 +282,45 @@ def test_balls_over_too_many_cells_are_refused_before_memory_is_taken() -> None:
     thin = VoxelGrid(density, np.zeros(3), np.array([20_000.0, 1.0, 1.0]))
     with pytest.raises(ValueError, match="expected balls that"):
         approximate(thin, count=1, overlap=2.2)
+
+
+@pytest.mark.parametrize("method", ALL)
+def test_a_voxel_cut_into_eight_equal_ones_is_the_same_cloud(cloud, method):
+    # Duplicated values, many ties: the balls are others, what they stand for is not.
+    grid = cloud()
+    fine = VoxelGrid(
+        grid.density.repeat(2, 0).repeat(2, 1).repeat(2, 2), grid.lower, grid.upper
+    )
+    a, b = (approximate(g, count=25, method=method) for g in (grid, fine))
+    errors = [errors_of_fit(g, balls).density for g, balls in ((grid, a), (fine, b))]
+    assert errors[1] < 1.25 * errors[0]
+    masses = [float((balls.densities * balls.radii**3).sum()) for balls in (a, b)]
+    assert masses[1] == pytest.approx(masses[0], rel=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["quick", "full"])
+def test_the_number_of_threads_shows_in_no_bit(method):
+    code = (
+        "import hashlib, numpy as np\n"
+        "from refcloud import approximate, generate\n"
+        f"b = approximate(generate(), count=1000, method={method!r})\n"
+        "parts = (b.centers, b.radii, b.densities)\n"
+        "print(hashlib.sha256(b''.join(p.tobytes() for p in parts)).hexdigest())\n"
+    )
+    found = set()
+    for threads in ("1", "2", "4"):
+        names = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            env={
+                **os.environ,
+                **dict.fromkeys(names, threads),
+                "PYTHONPATH": str(Path(refcloud.__file__).parents[1]),
+            },
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        found.add(done.stdout)
+    assert len(found) == 1
