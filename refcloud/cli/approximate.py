@@ -9,7 +9,7 @@ from typing import Any
 
 from refcloud.cli.docstrings import summary
 from refcloud.cli.generate import describe
-from refcloud.cli.options import Option, options_of
+from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
@@ -46,15 +46,6 @@ class Outputs:
     """
 
     levels: bool = False
-
-
-class FileOption(Option):
-    """An option whose value is a file's name."""
-
-    @property
-    def metavar(self) -> str:
-        """Give what stands for the value in help."""
-        return "FILE"
 
 
 OUTPUTS = options_of(Outputs)

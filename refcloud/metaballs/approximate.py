@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Annotated, Literal
 
@@ -19,7 +20,7 @@ from refcloud.metaballs.kernels import Kernel
 from refcloud.metaballs.kmeans import Clusters
 from refcloud.metaballs.orthogonal import orthogonal
 from refcloud.metaballs.pairs import Work, prepare
-from refcloud.metaballs.refine import Fit
+from refcloud.metaballs.refine import Fit, Listed
 from refcloud.metaballs.settings import Settings, Watch
 from refcloud.metaballs.subtract import subtract
 from refcloud.metaballs.voxel_centres import random, uniform
@@ -35,7 +36,7 @@ Method = Literal[
     "orthogonal",
     "subtract",
 ]
-METHODS = {
+METHODS: dict[Method, Callable[[Work, int, Settings], Listed]] = {
     "quick": quick,
     "standard": standard,
     "full": full,
@@ -108,7 +109,7 @@ def approximate(
     refine_steps
         Number of Levenberg-Marquardt steps, on the voxels themselves for "standard".
         None is 5 for "standard", or 8 on each coarser grid that serves balls many
-        voxels wide and 1 on the voxels; for "full" 20, or 24 on a coarser grid.
+        voxels wide and 1 on the voxels; for "full" 18, or 24 on a coarser grid.
     least_radius
         Smallest radius of a ball, in voxels. Below 1 balls fit samples, not a field.
         Not in "man".

@@ -20,7 +20,9 @@ SEEDED, SHARES = 0.4, (0.6, 0.8, 1.0)
 FEW = 300
 # Levenberg-Marquardt steps: before each growth; after the last one, on the voxels or on
 # a coarser grid; and on the voxels after a coarser grid.
-STAGE_STEPS, END_STEPS, COARSE_STEPS, LAST_STEPS = 4, 20, 24, 4
+STAGE_STEPS, END_STEPS, COARSE_STEPS, LAST_STEPS = 4, 18, 24, 4
+# Conjugate gradients in each of them: near the end a better direction pays.
+INNER_STEPS = 12
 
 
 def full(work: Work, count: int, settings: Settings) -> Listed:
@@ -51,7 +53,12 @@ def grown(grid: Work, state: Listed, count: int, settings: Settings) -> Listed:
     for share in (s for s in SHARES if s * count > present):
         # Balls of height 0 are not there: others take their place.
         state = refine(
-            grid, state, settings.kernel, steps=STAGE_STEPS, least_radius=least
+            grid,
+            state,
+            settings.kernel,
+            steps=STAGE_STEPS,
+            least_radius=least,
+            inner=INNER_STEPS,
         )
         missing = round(share * count) - int(np.count_nonzero(state.fit.heights))
         if missing > 0:
@@ -68,7 +75,14 @@ def _refined(grid: Work, state: Listed, settings: Settings) -> Listed:
     if steps is None:
         steps = END_STEPS if grid.joined == 1 else COARSE_STEPS
     least = settings.least_radius * grid.joined
-    return refine(grid, state, settings.kernel, steps=steps, least_radius=least)
+    return refine(
+        grid,
+        state,
+        settings.kernel,
+        steps=steps,
+        least_radius=least,
+        inner=INNER_STEPS,
+    )
 
 
 def ended(

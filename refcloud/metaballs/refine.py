@@ -72,6 +72,7 @@ def refine(
     *,
     steps: int,
     least_radius: float,
+    inner: int = INNER_STEPS,
     observe: Callable[[int, Fit], object] | None = None,
 ) -> Listed:
     """Move all balls to lower the squared error over all voxels.
@@ -81,7 +82,7 @@ def refine(
     damping = DAMPING
     jacobian = _jacobian(state.pairs, state.fit, kernel) if steps else np.zeros((5, 0))
     for number in range(steps):
-        step = _solve(state.pairs, jacobian, state.residual, damping)
+        step = _solve(state.pairs, jacobian, state.residual, damping, inner)
         trial = listed(work, _moved(work, state.fit, step, least_radius), kernel)
         if trial.cost < state.cost:
             state = trial
@@ -105,7 +106,13 @@ def _jacobian(pairs: Pairs, fit: Fit, kernel: Kernel) -> Array:
     return jacobian
 
 
-def _solve(pairs: Pairs, jacobian: Array, residual: Array, damping: float) -> Array:
+def _solve(
+    pairs: Pairs,
+    jacobian: Array,
+    residual: Array,
+    damping: float,
+    inner: int = INNER_STEPS,
+) -> Array:
     """Solve for the step, shape (5, N), by conjugate gradients with 5 x 5 blocks."""
     gradient = pairs.by_ball(jacobian * residual[pairs.voxel])
     blocks = np.zeros((pairs.count, 5, 5))
@@ -131,7 +138,7 @@ def _solve(pairs: Pairs, jacobian: Array, residual: Array, damping: float) -> Ar
     guess = condition(left)
     direction, power = guess, float((left * guess).sum())
     first = power
-    for _ in range(INNER_STEPS):
+    for _ in range(inner):
         if power <= INNER_SHARE**2 * first or power <= 0.0:
             break
         image = times(direction)

@@ -293,9 +293,10 @@ def test_a_voxel_cut_into_eight_equal_ones_is_the_same_cloud(cloud, method):
     )
     a, b = (approximate(g, count=25, method=method) for g in (grid, fine))
     errors = [errors_of_fit(g, balls).density for g, balls in ((grid, a), (fine, b))]
-    assert errors[1] < 1.25 * errors[0]
+    # The steps between voxels are part of the cloud now: up to half as much again.
+    assert errors[1] < 1.75 * errors[0]
     masses = [float((balls.densities * balls.radii**3).sum()) for balls in (a, b)]
-    assert masses[1] == pytest.approx(masses[0], rel=0.1)
+    assert masses[1] == pytest.approx(masses[0], rel=0.15)
 
 
 @pytest.mark.slow

@@ -85,7 +85,7 @@ def test_errors_are_below_those_of_kmeans_and_ridge(count):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("count", "few"), [(1000, 150), (3000, 300)])
+@pytest.mark.parametrize(("count", "few"), [(1000, 200), (3000, 450)])
 def test_few_balls_err_as_little_as_the_peers_many(count, few):
     pytest.importorskip("sklearn", reason="needs scikit-learn (extra: bench)")
     grid = generate("ellipsoid", seed=2)
