@@ -13,9 +13,9 @@ from refcloud.metaballs.refine import Fit, Listed, listed
 # Phase 3 ends where the relative error of all voxels is this, or after so many steps.
 PAPER_ERROR, PAPER_STEPS = 0.1, 30
 # How far the heights' gradient may be from 0, over the right side. H is above its least
-# by that squared times the condition, below 100 for balls: 1e-6 of sum y^2 at 1e-4.
+# by that squared times the condition, below 100 for balls: 1e-10 of sum y^2 at 1e-6.
 # Heights that the next steps move on need no more than 1e-2.
-OPTIMAL, ROUGH, MOST_STEPS = 1e-4, 1e-2, 2000
+OPTIMAL, ROUGH, MOST_STEPS = 1e-6, 1e-2, 2000
 
 
 def with_heights(

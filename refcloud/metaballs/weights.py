@@ -9,9 +9,12 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Range, Shape
 
-# Weights grow with this power of density: heights alone set right what a clustering
-# does, which wants more balls where most is to be fitted; balls that are refined move.
-POWER, REFINED_POWER = 1.5, 1.0
+# Weights grow with this power of density: heights alone cannot set right what the
+# clustering has done, and most is to be fitted where the cloud is dense.
+POWER = 1.5
+# Beside the rim's weight a voxel of almost no density counts as a fifth of the densest:
+# balls that are refined keep an outline that thin voxels draw.
+FLOOR = 0.2
 # Depths above this many rim depths weigh as the inside: exp(-12) is 6e-6.
 DEEP = 12.0
 
@@ -66,7 +69,7 @@ def voxel_weights(density: Array, edges: Array, rim: float, rim_depth: float) ->
     """Weigh occupied voxels by density and nearness to the rim, shape (K,).
 
     Formula: (density / largest)^1.5, or with a rim
-    density / largest (1 + rim exp(-depth / rim_depth))
+    (0.2 + density / largest) (1 + rim exp(-depth / rim_depth))
     """
     inside = density > 0.0
     shares = density[inside] / density.max(initial=0.0, where=inside)
@@ -74,4 +77,4 @@ def voxel_weights(density: Array, edges: Array, rim: float, rim_depth: float) ->
         return shares**POWER
     most = max(DEEP * rim_depth, float(edges.max()))
     near = np.exp(-depth(density, edges, most=most)[inside] / rim_depth)
-    return shares**REFINED_POWER * (1.0 + rim * near)
+    return (FLOOR + shares) * (1.0 + rim * near)
