@@ -28,8 +28,8 @@ STEPS = np.array([1.0 / ROOT, 1.0 / ROOT**2, 1.0 / ROOT**3])
 # Places with cloud wanted for each ball: their mass and spread are means over as many.
 SAMPLES, LEAST_SAMPLES = 16, 2000
 # Places drawn at a time, and how often at most: a cloud that fills less than 1 part in
-# 200 of its box gets fewer balls.
-BATCH, MOST_BATCHES = 8, 400
+# 100 of its box gets fewer balls.
+BATCH, MOST_BATCHES = 8, 200
 MOST_PLACES = 1 << 22  # with cloud, kept at a time: 134 MB
 
 

@@ -26,6 +26,7 @@ def test_every_method_takes_part_at_every_count() -> None:
     assert MOST["orthogonal"] == 1000
 
 
+@pytest.mark.slow
 def test_the_errors_in_the_table_are_those_of_the_fits() -> None:
     contenders = [c for c in fits(0) if c.task == "  30 balls"]
     rows = {row.name: row for row in timed(contenders, rounds=1)}

@@ -17,7 +17,7 @@ from refcloud.metaballs.fewest import fewest
 from refcloud.noise.hashing import uniform
 
 
-@pytest.mark.parametrize("method", ["quick", "standard", "full", "man", "subtract"])
+@pytest.mark.parametrize("method", ["quick", "standard", "full"])
 def test_the_tolerance_is_reached_and_one_ball_fewer_missed_it(cloud, method):
     grid, tried = cloud(), {}
 
@@ -36,12 +36,12 @@ def test_the_tolerance_is_reached_and_one_ball_fewer_missed_it(cloud, method):
 
 
 def test_smaller_tolerances_take_more_balls(cloud):
-    counts = [len(approximate(cloud(), tolerance=t)) for t in (0.9, 0.6, 0.4, 0.3)]
+    counts = [len(approximate(cloud(), tolerance=t)) for t in (0.9, 0.6, 0.4)]
     assert counts == sorted(counts)
     assert counts[0] < counts[-1]
 
 
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(
     seed=seeds,
     most=st.integers(1, 5000),
