@@ -16,7 +16,9 @@ DOCUMENTS = {
 }
 
 PIECES = {
-    "A13": "M: centres taken at uniform or random voxels",
+    "A12": "M: levels of detail of 1000, 100 and 30 balls",
+    "A13": "M: centres taken at uniform or random voxels, by orthogonal least squares,"
+    " or by placing and subtracting",
     "F01": "M: the framebuffer is cleared to white",
     "F02": "M: glBlendFunc",
     "F03": "M: the mean of an area that is read back",
@@ -69,6 +71,8 @@ PIECES = {
     "W04": "M: the cloud-map file",
     "W05": "M: the cloud file and the programs' parameters",
     "W12": "M, S, C: the same seed gives the same picture",
+    "X03": "M: 11,000 voxels as 1000, 100 and 30 balls",
+    "X09": "M: future work: balls without voxels in between",
 }
 
 # Number: (what is printed or left open, what refcloud does).

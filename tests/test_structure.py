@@ -25,7 +25,7 @@ FLOORS = (
     ("lighting", "sky"),
     ("compose", "scene", "noise_pictures"),
     ("render",),
-    ("scenes",),
+    ("scenes", "fit_pictures"),
     ("bench", "studio"),
     ("cli",),
     ("__main__",),

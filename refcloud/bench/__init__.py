@@ -1,5 +1,6 @@
 """Benchmarks: run time beside error, and beside peers where they are installed."""
 
+from refcloud.bench.plot import plot
 from refcloud.bench.subject import MS, NS, Subject, Unit, run, table
 from refcloud.bench.subjects import SUBJECTS
 from refcloud.bench.timing import Contender, Row, Timing
@@ -14,6 +15,7 @@ __all__ = [
     "Subject",
     "Timing",
     "Unit",
+    "plot",
     "run",
     "table",
     "worley_contenders",

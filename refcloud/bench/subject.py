@@ -42,6 +42,8 @@ class Subject:
     rate
         Name of the column of samples per unit of time, and how many of them one sample
         a nanosecond is; None for no such column.
+    digits
+        Significant digits of the errors.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Subject:
     peers: tuple[str, ...] = ()
     unit: Unit = MS
     rate: tuple[str, float] | None = None
+    digits: int = 1
 
 
 def run(subject: Subject, quick: bool = False) -> list[Row]:
@@ -100,7 +103,7 @@ def table(subject: Subject, rows: list[Row]) -> str:
         if rate:
             line.append(f"{rate[1] / timing.median:.1f}" if timing.median > 0 else "-")
         line.append("-" if row.ratio is None else f"{row.ratio:.1f}")
-        line.append("-" if row.error is None else f"{row.error:.1g}")
+        line.append("-" if row.error is None else f"{row.error:.{subject.digits}g}")
         lines.append(line)
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
     text = [

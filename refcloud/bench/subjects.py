@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from refcloud.bench.approximate import APPROXIMATE
 from refcloud.bench.noise import NOISE
 from refcloud.bench.subject import Subject
 
-SUBJECTS: dict[str, Subject] = {subject.name: subject for subject in (NOISE,)}
+SUBJECTS: dict[str, Subject] = {
+    subject.name: subject for subject in (NOISE, APPROXIMATE)
+}

@@ -3,22 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from refcloud.cli.docstrings import summary
 from refcloud.cli.generate import describe
-from refcloud.cli.options import options_of
+from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
-from refcloud.cloudmap import load_voxels
-from refcloud.metaballs import approximate, errors_of_fit, save_metaballs
-from refcloud.metaballs.errors import FitErrors
+from refcloud.cloudmap import VoxelGrid, load_voxels
+from refcloud.fit_pictures import FitPictures, fit_pictures
+from refcloud.metaballs import (
+    FitErrors,
+    Metaballs,
+    approximate,
+    errors_of_fit,
+    levels_of_detail,
+    save_levels,
+    save_metaballs,
+)
+from refcloud.refusal import complaint
 
 ABOUT = summary(approximate)
 OPTIONS = options_of(approximate)
+IN_A_CHAIN = ("seed", "kernel")  # what levels of detail take of these
 SUFFIXES = (".npz",)
+PICTURES = (".png", ".npy")
 VOXELS = "-voxels"  # what `refcloud generate` puts at the end of its names
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """What is written beside or in place of one set of balls.
+
+    Attributes
+    ----------
+    levels
+        A chain of 30, 100, 300 and 1000 balls in one file, by method "full", to be
+        chosen from by size in the picture.
+    """
+
+    levels: bool = False
+
+
+OUTPUTS = options_of(Outputs)
+PICTURE = FileOption(
+    "picture",
+    "--picture",
+    (str,),
+    None,
+    "Name of a picture (.png or .npy) of the voxels, the balls, and their"
+    " difference, side by side; none without it.",
+)
 
 
 def command() -> Command:
@@ -27,33 +65,80 @@ def command() -> Command:
         "approximate",
         ABOUT,
         output="name of the metaballs' file (.npz); by default IN-COUNTballs.npz with"
-        " the number of balls that there are",
+        " the number of balls that there are, or IN-levels.npz",
     )
     made.argument("IN.npz", "a cloud map, as refcloud generate writes it")
     made.group("the balls", "", OPTIONS)
+    made.group("the files", "", (*OUTPUTS, PICTURE))
     return made
 
 
 def run(words: Sequence[str]) -> int:
     """Approximate a cloud map and write the metaballs' file."""
     given = command().parse(words)
+    chosen, levels = given.of(OPTIONS), given.of(OUTPUTS).get("levels", False)
+    if levels and not set(chosen) <= set(IN_A_CHAIN):
+        other = ", ".join("--" + name for name in chosen if name not in IN_A_CHAIN)
+        expected = "no other option of the balls than --seed and --kernel"
+        raise ValueError(complaint("--levels", expected, other.replace("_", "-")))
     source = Path(given.arguments[0])
     stem = source.stem.removesuffix(VOXELS)
-    path = ready(given.named(default_name(stem, 0)), SUFFIXES)
-    stages = Stages()
+    name = f"{stem}-levels.npz" if levels else default_name(stem, 0)
+    path = ready(given.named(name), SUFFIXES)
+    shown = given.options.get(PICTURE.flag)
+    if shown is not None:
+        shown = ready(shown, PICTURES)
+    stages = _Stages()
     with stages.stage("load"):
         grid = load_voxels(source)
-    with stages.stage("approximate"):
-        balls = approximate(grid, **given.of(OPTIONS), observe=stages.watch)
+    if levels:
+        with stages.stage("approximate"):
+            chain = levels_of_detail(grid, **chosen, observe=stages.watch)
+        sets, rows = chain.levels, chain.finest.skipped
+        with stages.stage("save"):
+            save_levels(chain, path)
+    else:
+        with stages.stage("approximate"):
+            balls = approximate(grid, **chosen, observe=stages.watch)
+        sets, rows = (balls,), balls.skipped
+        if given.output is None:
+            path = ready(default_name(stem, len(balls)), SUFFIXES)
+        with stages.stage("save"):
+            save_metaballs(balls, path)
+    notes = list(stages.tried)
     with stages.stage("measure"):
-        errors = errors_of_fit(grid, balls)
-    if given.output is None:
-        path = ready(default_name(stem, len(balls)), SUFFIXES)
-    with stages.stage("save"):
-        save_metaballs(balls, path)
-    notes = [f"{describe(grid)}: {len(balls)} balls", *described(errors)]
-    report(notes, balls.skipped, stages.line(), path)
+        drawn = None
+        for balls in sets:
+            pictures = fit_pictures(grid, balls, voxels=drawn and drawn.voxels)
+            notes += _measured(grid, balls, pictures)
+            drawn = pictures
+        if shown is not None and drawn is not None:
+            drawn.side_by_side().save(shown)
+            notes.append(f"voxels, balls and difference: {shown}")
+    report(notes, rows, stages.line(), path)
     return 0
+
+
+class _Stages(Stages):
+    """Stages that keep what a tolerance made the fit try."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tried: list[str] = []
+
+    def watch(self, name: str, value: Any) -> None:
+        super().watch(name, value)
+        if name.startswith("tried "):
+            self.tried.append(name)
+
+
+def _measured(grid: VoxelGrid, balls: Metaballs, pictures: FitPictures) -> list[str]:
+    """Say how far one set of balls is from the cloud map."""
+    return [
+        f"{describe(grid)}: {len(balls)} balls",
+        *described(errors_of_fit(grid, balls)),
+        f"relative RMSE of the rendered picture: {pictures.error:.4f}",
+    ]
 
 
 def default_name(stem: str, count: int) -> str:

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from refcloud import bench
-from refcloud.cli.options import options_of
-from refcloud.cli.outputs import say
+from refcloud.cli.options import FileOption, options_of
+from refcloud.cli.outputs import ready, say
 from refcloud.cli.parser import Command
 from refcloud.refusal import complaint
 
@@ -33,13 +33,22 @@ class Measurement:
 
 
 OPTIONS = options_of(Measurement)
+PLOT = FileOption(
+    "plot",
+    "--plot",
+    (str,),
+    None,
+    "Name of a figure (.png) of error against run time; none without it. Needs"
+    " matplotlib.",
+)
+FIGURES = (".png",)
 
 
 def command() -> Command:
     """Give the command's argument and options."""
     made = Command("bench", ABOUT)
     made.argument("WHAT", "what is measured: " + ", ".join(bench.SUBJECTS))
-    made.group("the measurement", "", OPTIONS)
+    made.group("the measurement", "", (*OPTIONS, PLOT))
     return made
 
 
@@ -51,9 +60,14 @@ def run(words: Sequence[str]) -> int:
         expected = "one of " + ", ".join(bench.SUBJECTS)
         raise ValueError(complaint("WHAT", expected, repr(name)))
     subject, how = bench.SUBJECTS[name], Measurement(**given.of(OPTIONS))
+    figure = given.options.get(PLOT.flag)
+    if figure is not None:
+        figure = ready(figure, FIGURES)
     rows = bench.run(subject, how.quick)
     if how.json:
         say(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))
     else:
         say(bench.table(subject, rows))
+    if figure is not None:
+        say(str(bench.plot(subject, rows, figure)))
     return 0

@@ -8,8 +8,9 @@ from refcloud.cli.generate import describe as described_grid
 from refcloud.cloudmap import VoxelGrid, load_voxels
 from refcloud.cloudmap.file import FORMAT as VOXELS
 from refcloud.files import read_arrays
-from refcloud.metaballs import Metaballs, load_metaballs
+from refcloud.metaballs import Levels, Metaballs, load_levels, load_metaballs
 from refcloud.metaballs.file import FORMAT as METABALLS
+from refcloud.metaballs.levels_file import FORMAT as LEVELS
 from refcloud.refusal import complaint
 from refcloud.scenes import SCENES
 
@@ -34,7 +35,7 @@ def find(what: str) -> bool:
     return False
 
 
-def load(path: str) -> Metaballs | VoxelGrid:
+def load(path: str) -> Metaballs | VoxelGrid | Levels:
     """Load what a file holds, by the kind that it says it is.
 
     Raises
@@ -44,6 +45,8 @@ def load(path: str) -> Metaballs | VoxelGrid:
     """
     if _is(VOXELS, path):
         return load_voxels(path)
+    if _is(LEVELS, path):
+        return load_levels(path)
     try:
         return load_metaballs(path)
     except ValueError as refusal:
@@ -61,8 +64,10 @@ def _is(kind: str, path: str) -> bool:
     return True
 
 
-def describe(cloud: Metaballs | VoxelGrid) -> str:
+def describe(cloud: Metaballs | VoxelGrid | Levels) -> str:
     """Say how many balls or voxels there are."""
+    if isinstance(cloud, Levels):
+        return "levels of " + ", ".join(str(len(each)) for each in cloud.levels)
     if isinstance(cloud, VoxelGrid):
         return described_grid(cloud)
     return f"{len(cloud)} balls"

@@ -88,6 +88,15 @@ class Option:
         return f"{self.text.rstrip('.')} ({', '.join(facts)})"
 
 
+class FileOption(Option):
+    """An option whose value is a file's name."""
+
+    @property
+    def metavar(self) -> str:
+        """Give what stands for the value in help."""
+        return "FILE"
+
+
 def options_of(
     thing: Callable[..., Any], *, without: Collection[str] = ()
 ) -> tuple[Option, ...]:

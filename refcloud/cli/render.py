@@ -24,7 +24,8 @@ from refcloud.cli.setting import (
     suns_for,
 )
 from refcloud.image import Picture
-from refcloud.render import render
+from refcloud.metaballs import Levels, choose_level
+from refcloud.render import framed, render
 
 ABOUT = summary(render)
 TEXTS = parameter_texts(render)
@@ -88,9 +89,15 @@ def run(words: Sequence[str]) -> int:
         with stages.stage("load"):
             cloud = load(what)
         notes = [f"{what}: {describe(cloud)}"]
+    levels = cloud if isinstance(cloud, Levels) else None
+    cloud = cloud.finest if isinstance(cloud, Levels) else cloud
     shown = None if isinstance(cloud, str) else cloud
     camera = camera_for(given.of(CAMERA), shown, size)
     medium, note = medium_for(given.of(MEDIUM), shown, chosen.get("look"))
+    if levels is not None:
+        camera = camera or framed(levels.finest, *size)
+        cloud = choose_level(levels, camera, tolerance=chosen["tolerance"])
+        notes.append(f"level of {len(cloud)} balls")
     with stages.stage("render"):
         picture = render(
             cloud,

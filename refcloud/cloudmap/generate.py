@@ -124,7 +124,7 @@ def generate(
         lower, upper = lower - room, upper + room
         lower[1] = -peak  # the base is flat: nothing lies below -n / 2
     else:
-        quadrics, lower, upper = _ellipsoid_volumes(diameters, ellipsoids, seed or 0)
+        quadrics, lower, upper = ellipsoid_volumes(diameters, ellipsoids, seed or 0)
     (x, y, z), origin = _lattice(lower, upper, voxel)
 
     # 2. Noise on the grid (eq 1), with octaves finer than the cells left out.
@@ -158,7 +158,7 @@ def generate(
     return _cropped(density, origin, voxel, skipped)
 
 
-def _ellipsoid_volumes(
+def ellipsoid_volumes(
     diameters: Array, count: int, seed: int
 ) -> tuple[list[Array], Array, Array]:
     """Place the first ellipsoid at the origin and smaller ones around it."""

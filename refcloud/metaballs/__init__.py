@@ -2,6 +2,7 @@
 
 from refcloud.metaballs.approximate import approximate
 from refcloud.metaballs.balls import Metaballs, voxel_balls
+from refcloud.metaballs.direct import direct_metaballs
 from refcloud.metaballs.errors import FitErrors, errors_of_fit
 from refcloud.metaballs.field import field, field_grid
 from refcloud.metaballs.file import load_metaballs, save_metaballs
@@ -15,21 +16,28 @@ from refcloud.metaballs.kernels import (
     wyvill,
 )
 from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
+from refcloud.metaballs.levels import Levels, choose_level, levels_of_detail
+from refcloud.metaballs.levels_file import load_levels, save_levels
 from refcloud.metaballs.nonnegative import non_negative_least_squares
+from refcloud.metaballs.orthogonal import orthogonal_least_squares
 from refcloud.metaballs.placement import placed
 from refcloud.metaballs.prune import prune
 from refcloud.metaballs.spread import rms_radii
+from refcloud.metaballs.subtract import place_and_subtract
 from refcloud.metaballs.weights import depth
 
 __all__ = [
     "Clusters",
     "FitErrors",
+    "Levels",
     "Metaballs",
     "adaptive_kmeans",
     "approximate",
     "axis_depth",
+    "choose_level",
     "chord",
     "depth",
+    "direct_metaballs",
     "errors_of_fit",
     "field",
     "field_grid",
@@ -37,15 +45,20 @@ __all__ = [
     "gradient_descent",
     "integral",
     "largest_eigenvalue",
+    "levels_of_detail",
     "lloyd",
+    "load_levels",
     "load_metaballs",
     "non_negative_least_squares",
     "normalisation",
+    "orthogonal_least_squares",
+    "place_and_subtract",
     "placed",
     "printed_wyvill",
     "profile",
     "prune",
     "rms_radii",
+    "save_levels",
     "save_metaballs",
     "voxel_balls",
     "wyvill",

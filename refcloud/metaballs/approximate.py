@@ -1,47 +1,69 @@
-"""A cloud map as metaballs: the paper's three phases, and two better fits."""
+"""A cloud map as metaballs: the paper's three phases, and better fits."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
 
 from refcloud.checking import checked
 from refcloud.cloudmap.voxels import VoxelGrid
-from refcloud.conventions import Array, Observer, Range, Seed, Skipped
+from refcloud.conventions import Observer, Range, Seed, Skipped
 from refcloud.metaballs.balls import Metaballs
-from refcloud.metaballs.heights import descend, dot
+from refcloud.metaballs.clustered import man, quick, standard
+from refcloud.metaballs.errors import errors_of_fit
+from refcloud.metaballs.fewest import fewest
+from refcloud.metaballs.grow import full
 from refcloud.metaballs.kernels import Kernel
-from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
-from refcloud.metaballs.nonnegative import solve_non_negative
-from refcloud.metaballs.pairs import Pairs, Work, list_pairs, prepare
-from refcloud.metaballs.refine import Fit, refine
-from refcloud.metaballs.spread import rms_radii
-from refcloud.metaballs.weights import voxel_weights
+from refcloud.metaballs.kmeans import Clusters
+from refcloud.metaballs.orthogonal import orthogonal
+from refcloud.metaballs.pairs import Work, prepare
+from refcloud.metaballs.refine import Fit, Listed
+from refcloud.metaballs.settings import Settings, Watch
+from refcloud.metaballs.subtract import subtract
+from refcloud.metaballs.voxel_centres import random, uniform
+from refcloud.refusal import complaint
 
-# R over sigma: 2 is the paper's figure 8; 2.2 gives the least error on all voxels.
-PAPER_OVERLAP, OVERLAP = 2.0, 2.2
-# Extra weight of the rim: with refinement it lowers the error, without it raises it.
-RIM = {"standard": 6.0, "quick": 0.0, "man": 0.0}
-# Phase 3 ends where the relative error of all voxels is this, or after so many steps.
-PAPER_ERROR, PAPER_STEPS = 0.1, 30
-# Heights are optimal to this share; the fit's own error is a million times larger.
-OPTIMAL, MOST_STEPS = 1e-8, 2000
+Method = Literal[
+    "quick",
+    "standard",
+    "full",
+    "man",
+    "uniform",
+    "random",
+    "orthogonal",
+    "subtract",
+]
+METHODS: dict[Method, Callable[[Work, int, Settings], Listed]] = {
+    "quick": quick,
+    "standard": standard,
+    "full": full,
+    "man": man,
+    "uniform": uniform,
+    "random": random,
+    "orthogonal": orthogonal,
+    "subtract": subtract,
+}
+COUNT = 1000  # where neither a count nor a tolerance is given
 
 
 @checked
 def approximate(
     grid: VoxelGrid,
     *,
-    count: Annotated[int, Range(1, 1_000_000)] = 1000,
-    method: Literal["quick", "standard", "man"] = "standard",
+    count: Annotated[int, Range(1, 1_000_000)] | None = None,
+    tolerance: Annotated[float, Range(0.0, 1.0, open_lower=True, open_upper=True)]
+    | None = None,
+    method: Method = "standard",
     seed: Seed = 0,
     overlap: Annotated[float, Range(0.1, 100.0)] | None = None,
     rim: Annotated[float, Range(0.0, 1e6)] | None = None,
     rim_depth: Annotated[float, Range(0.01, 1e4, "voxel")] = 1.5,
     kernel: Kernel = "wyvill",
     rounds: Annotated[int, Range(0, 10_000)] = 10,
-    refine_steps: Annotated[int, Range(0, 10_000)] = 5,
+    refine_steps: Annotated[int, Range(0, 10_000)] | None = None,
     least_radius: Annotated[float, Range(0.0, 1e4, "voxel", open_lower=True)] = 1.1,
     observe: Observer | None = None,
 ) -> Metaballs:
@@ -58,19 +80,26 @@ def approximate(
     grid
         The cloud map.
     count
-        Number of balls wanted. A cloud never gets more balls than it has voxels.
+        Number of balls wanted; 1000 without a tolerance. A cloud never gets more balls
+        than it has voxels.
+    tolerance
+        In place of a count: the relative root mean square error over all voxels that
+        is to be reached by few balls. With one ball fewer it was tried and missed.
     method
         How the balls are found. "man" is paper M's three phases; "quick" is weighted
-        k-means with heights by least squares; "standard" refines all of that together.
+        k-means with heights by least squares; "standard" refines all of that together;
+        "full" grows the balls where most is missing, and refines longer. To compare:
+        "uniform" and "random" take voxels as centres, "orthogonal" chooses them by
+        orthogonal least squares, "subtract" places ball after ball and takes each away.
     seed
         Where the clustering starts. The same seed gives the same bits.
     overlap
-        Radius over the root mean square distance of a cluster. None is 2.2, and 2 for
-        "man".
+        Radius over the root mean square distance of a cluster. None is 2.2, or 2.1
+        where balls are many voxels wide, and 2 for "man".
     rim
         How much more the voxels at the rim weigh in the clustering, which puts more
-        and smaller balls there. None is 6 for "standard" and 0 for "quick", whose balls
-        stay where the clustering puts them. Not in "man".
+        and smaller balls there. None is 6 where balls a few voxels wide are refined,
+        else 0. Not in "man".
     rim_depth
         Depth in voxels at which the rim's extra weight has fallen to 1/e.
     kernel
@@ -78,13 +107,15 @@ def approximate(
     rounds
         How often the weighted k-means moves its centres. Not in "man".
     refine_steps
-        Number of Levenberg-Marquardt steps of "standard".
+        Number of Levenberg-Marquardt steps, on the voxels themselves for "standard".
+        None is 5 for "standard", or 8 on each coarser grid that serves balls many
+        voxels wide and 1 on the voxels; for "full" 18, or 24 on a coarser grid.
     least_radius
         Smallest radius of a ball, in voxels. Below 1 balls fit samples, not a field.
         Not in "man".
     observe
         Function that is called with a name and each intermediate: clusters, then
-        metaballs.
+        metaballs, and every count that a tolerance makes it try.
 
     Returns
     -------
@@ -93,89 +124,67 @@ def approximate(
     Raises
     ------
     ValueError
-        The balls would cover over 2^24 voxels together.
+        Both a count and a tolerance are given, or balls cannot reach the tolerance;
+        the balls would cover over 2^24 voxels together.
 
-    Source: paper M, section 3, eq 11-24; E18, E19.
+    Source: paper M, section 3, eq 11-24; A13; E18, E19.
 
     Examples
     --------
     >>> len(approximate(VoxelGrid(np.ones((2, 2, 2)), [0, 0, 0], [1, 1, 1]), count=2))
     2
     """
+    if count is not None and tolerance is not None:
+        both = complaint("tolerance", "none beside a count", f"{tolerance:g}")
+        raise ValueError(f"{both}; give one of them")
     work = prepare(grid)
     if work is None:
         return Metaballs(np.zeros((0, 3)), np.zeros(0), np.zeros(0), kernel)
-    if overlap is None:
-        overlap = PAPER_OVERLAP if method == "man" else OVERLAP
+    settings = Settings(
+        kernel,
+        seed,
+        watcher(kernel, observe),
+        overlap,
+        rim,
+        rim_depth,
+        rounds,
+        refine_steps,
+        least_radius,
+    )
+    most = work.voxels
 
-    def show(name: str, fit: Fit) -> None:
+    def fitted(wanted: int) -> Metaballs:
+        fit = METHODS[method](work, min(wanted, most), settings).fit
+        return as_balls(work, fit, kernel, skipped_of(work, fit, wanted))
+
+    def attempt(wanted: int) -> tuple[float, Metaballs]:
+        balls = fitted(wanted)
+        error = errors_of_fit(grid, balls).density
         if observe is not None:
-            observe(name, _balls(work, fit, kernel, ()))
+            observe(f"tried {wanted} balls, relative RMSE {error:.4f}", balls)
+        return error, balls
 
-    points = work.positions()
-    if method == "man":
-        clusters = adaptive_kmeans(points, count, seed=seed)
-        mass, least = None, 0.0
-    else:
-        rim = RIM[method] if rim is None else rim
-        weights = voxel_weights(work.density, work.edges, rim, rim_depth)
-        clusters = lloyd(points, weights, count, seed=seed, rounds=rounds)
-        mass, least = work.density[work.density > 0.0], least_radius
-    if observe is not None:
-        observe("clusters", _in_scene(work, clusters))
-    # Phase 2: a box of edges e has the mean square distance |e|^2 / 12.
-    spacing = float(np.sqrt((work.edges**2).mean()))
-    sigma = rms_radii(
-        points,
-        clusters.assignment,
-        centers=clusters.centers,
-        spacing=spacing,
-        weights=mass,
-    )
-    radii = np.maximum(overlap * sigma, least)
-    # Phase 3.
-    pairs = list_pairs(work, clusters.centers, radii, kernel)
-    fit = Fit(clusters.centers, radii, _heights(pairs, method))
-    show("heights", fit)
-    if method == "standard" and refine_steps:
-        fit = refine(
-            work,
-            fit,
-            kernel,
-            steps=refine_steps,
-            least_radius=least,
-            observe=lambda number, fit: show(f"refined {number}", fit),
-        )
-        # The last step moved the balls: their heights are made optimal once more.
-        pairs = list_pairs(work, fit.centers, fit.radii, kernel)
-        fit = Fit(fit.centers, fit.radii, _heights(pairs, method, fit.heights))
-    return _balls(work, fit, kernel, _skipped(work, fit, count))
+    if tolerance is not None:
+        return fewest(attempt, tolerance, most)
+    return fitted(COUNT if count is None else count)
 
 
-def _heights(pairs: Pairs, method: str, start: Array | None = None) -> Array:
-    if method == "man":
-        limit = PAPER_ERROR**2 * dot(pairs.target, pairs.target)
-        return descend(
-            pairs.forward,
-            pairs.backward,
-            pairs.target,
-            pairs.count,
-            rate=None,
-            limit=limit,
-            most_steps=PAPER_STEPS,
-        )
-    heights, _ = solve_non_negative(
-        lambda v: pairs.backward(pairs.forward(v)),
-        pairs.by_ball(pairs.value**2),
-        pairs.backward(pairs.target),
-        start=start,
-        optimal=OPTIMAL,
-        most_steps=MOST_STEPS,
-    )
-    return heights
+def watcher(kernel: Kernel, observe: Observer | None) -> Watch:
+    """Show what a fit on a grid finds in scene units."""
+
+    def watch(name: str, on: Work, found: Fit | Clusters) -> None:
+        if observe is None:
+            return
+        if isinstance(found, Clusters):
+            centers = on.origin + found.centers * on.edge
+            observe(name, replace(found, centers=centers))
+        else:
+            observe(name, as_balls(on, found, kernel, ()))
+
+    return watch
 
 
-def _balls(
+def as_balls(
     work: Work, fit: Fit, kernel: Kernel, skipped: tuple[Skipped, ...]
 ) -> Metaballs:
     """Give the balls that have density, in scene units."""
@@ -189,12 +198,7 @@ def _balls(
     )
 
 
-def _in_scene(work: Work, clusters: Clusters) -> Clusters:
-    centers = work.origin + clusters.centers * work.edge
-    return Clusters(centers, clusters.assignment, clusters.epochs)
-
-
-def _skipped(work: Work, fit: Fit, count: int) -> tuple[Skipped, ...]:
+def skipped_of(work: Work, fit: Fit, count: int) -> tuple[Skipped, ...]:
     """Report balls that were asked for and are not there."""
     rows = []
     missing = count - len(fit.heights)

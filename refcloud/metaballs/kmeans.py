@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Seed, Shape
-from refcloud.metaballs.choices import spread_start, start_patterns, visits
+from refcloud.metaballs.choices import (
+    ONE_THREAD,
+    spread_start,
+    start_patterns,
+    visits,
+)
 
 Labels = NDArray[np.integer]
-
-# Numbers in one block of scores: half a megabyte of float32 stays in the cache.
-BLOCK = 1 << 17
 
 
 @dataclass(frozen=True)
@@ -147,6 +149,12 @@ def lloyd(
     return _clusters(scaled, centers, middle, scale, rounds)
 
 
+def clusters_around(points: Array, centers: Array) -> Clusters:
+    """Assign points to given centres, and leave out those that get none."""
+    scaled, middle, scale = _scaled(points)
+    return _clusters(scaled, (centers - middle) / scale, middle, scale, 0)
+
+
 def _scaled(points: Array) -> tuple[Array, Array, float]:
     """Centre points and scale them into [-1, 1]."""
     middle = points.mean(axis=0) if len(points) else np.zeros(3)
@@ -157,24 +165,20 @@ def _scaled(points: Array) -> tuple[Array, Array, float]:
 
 def _nearest(points: Array, centers: Array) -> Labels:
     """Find the nearest centre of each point, lowest number first, in float32."""
-    # The largest x.c - |c|^2/2 is the nearest. Three products and sums on blocks that
-    # stay in the cache. A matrix product may be faster, or many times slower where
-    # its threads wait for each other, and differs in last bits between machines.
-    rows, columns = points.astype(np.float32), centers.astype(np.float32)
-    half = (0.5 * np.square(centers).sum(axis=1)).astype(np.float32)
-    step = max(1, BLOCK // max(1, len(centers)))
+    # The largest x.c - |c|^2/2 is the nearest: one matrix product of the rows [x, -1]
+    # with the columns [c, |c|^2/2], in blocks so small that BLAS keeps to one thread.
+    # Each score is a sum of four products, which no thread could split either.
+    rows = np.full((len(points), 4), -1.0, dtype=np.float32)
+    columns = np.empty((4, len(centers)), dtype=np.float32)
+    rows[:, :3], columns[:3] = points, centers.T
+    columns[3] = 0.5 * np.square(centers).sum(axis=1)
+    step = max(1, ONE_THREAD // (4 * max(1, len(centers))))
     score = np.empty((step, len(centers)), dtype=np.float32)
-    term = np.empty_like(score)
     labels = np.zeros(len(points), dtype=np.intp)
     for start in range(0, len(rows), step):
         part = rows[start : start + step]
-        a, b = score[: len(part)], term[: len(part)]
-        np.multiply(part[:, :1], columns[:, 0], out=a)
-        a -= half
-        for axis in (1, 2):
-            np.multiply(part[:, axis : axis + 1], columns[:, axis], out=b)
-            a += b
-        labels[start : start + step] = a.argmax(axis=1)
+        found = np.matmul(part, columns, out=score[: len(part)])
+        labels[start : start + step] = found.argmax(axis=1)
     return labels
 
 

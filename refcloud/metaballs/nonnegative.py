@@ -75,13 +75,15 @@ def solve_non_negative(
     start: Array | None = None,
     optimal: float,
     most_steps: int = MOST_STEPS,
+    positive: bool = False,
 ) -> tuple[Array, float]:
     """Minimise x.Gx/2 - right.x over x >= 0, G known by its products.
 
     Conjugate gradients on the numbers above 0; a projected step where one of them
     would fall below; a release of those at 0 once their gradient outweighs the rest
     (Dostal's proportioning, which cannot cycle). Returns x and how far the projected
-    gradient is from 0, over the right side.
+    gradient is from 0, over the right side. `positive` says that no entry of G is
+    below 0, which bounds its largest eigenvalue at once.
     """
     # Unit diagonal: balls of all sizes count alike. A ball without voxels stays at 0.
     scale = np.zeros_like(right)
@@ -97,7 +99,8 @@ def solve_non_negative(
     def times(v: Array) -> Array:
         return scale * product(scale * v)
 
-    step = 1.0 / power_iteration(times, len(b))
+    longest = row_bound if positive else power_iteration
+    step = 1.0 / longest(times, len(b))
     gradient = times(x) - b
     free = np.where(x > 0.0, gradient, 0.0)
     direction = free
@@ -135,3 +138,12 @@ def solve_non_negative(
             gradient = times(x) - b
             free = direction = np.where(x > 0.0, gradient, 0.0)
     return scale * x, off
+
+
+def row_bound(product: Product, count: int) -> float:
+    """Bound the largest eigenvalue of a matrix without entries below 0 from above.
+
+    Formula: max of (G w)_i / w_i for any w > 0 (Collatz and Wielandt); w = G 1 + 1
+    """
+    w = product(np.ones(count)) + 1.0
+    return float((product(w) / w).max())

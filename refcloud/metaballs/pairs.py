@@ -25,7 +25,7 @@ Numbers = NDArray[np.integer]
 # Edges that differ by less count as equal: an offset of 1e6 edges leaves such rounding.
 EQUAL_EDGES = 1e-6
 # Balls whose radii differ by less than this factor share one stencil of voxels.
-STENCIL_STEP = 1.1
+STENCIL_STEP = 1.15
 # Pairs of voxel and ball take about 100 bytes each: 1.6 GB, the most a fit may use.
 MOST_PAIRS = 1 << 24
 # Cells of the box that the balls reach over: 270 MB of float64.
@@ -50,6 +50,10 @@ class Work:
         Mean cell edge, scene units.
     peak
         The largest density.
+    voxels
+        Number of occupied voxels of the cloud map, also where the grid is coarser.
+    joined
+        How many voxels' edges a cell's edge is: 1 on the voxels themselves.
     """
 
     density: Array
@@ -57,6 +61,8 @@ class Work:
     origin: Array
     edge: float
     peak: float
+    voxels: int
+    joined: int = 1
 
     def positions(self) -> Array:
         """Give the occupied voxels' centres, shape (K, 3) as x, y, z."""
@@ -78,12 +84,14 @@ class Pairs:
         Squared ratio of distance and radius, below 1, shape (P,).
     value
         The kernel there, shape (P,).
-    starts, owners
-        First pair of each ball that has any, and which ball, shape (B,).
+    starts, owners, lengths
+        First pair of each ball that has any, which ball, how many pairs, shape (B,).
     count
         Number of balls N.
     target
         Density of all voxels of the box, empty ones included.
+    shape, corner
+        Of the box, and where the cloud's first voxel stands in it, as z, y, x.
     """
 
     voxel: Numbers
@@ -93,18 +101,29 @@ class Pairs:
     value: Array
     starts: Numbers
     owners: Numbers
+    lengths: Numbers
     count: int
     target: Array
+    shape: tuple[int, int, int]
+    corner: tuple[int, int, int]
 
     def forward(self, heights: Array) -> Array:
         """Sum the balls at each voxel: the design matrix times the heights."""
-        parts = self.value * heights[self.ball]
-        total = np.bincount(self.voxel, parts, minlength=len(self.target))
-        return total.astype(np.float64, copy=False)
+        return self.by_voxel(self.value * self.spread(heights))
 
     def backward(self, residual: Array) -> Array:
         """Sum voxels over each ball: the transposed design matrix times a residual."""
         return self.by_ball(self.value * residual[self.voxel])
+
+    def spread(self, numbers: Array) -> Array:
+        """Give each pair its ball's numbers, (..., N) to (..., P)."""
+        # A ball's pairs lie together: repeating is many times faster than look-ups.
+        return np.repeat(numbers[..., self.owners], self.lengths, axis=-1)
+
+    def by_voxel(self, numbers: Array) -> Array:
+        """Sum numbers of pairs, shape (P,), to numbers of voxels."""
+        total = np.bincount(self.voxel, numbers, minlength=len(self.target))
+        return total.astype(np.float64, copy=False)
 
     def by_ball(self, numbers: Array) -> Array:
         """Sum numbers of pairs, shape (..., P), to numbers of balls, (..., N)."""
@@ -129,7 +148,7 @@ def prepare(grid: VoxelGrid) -> Work | None:
         edges = np.ones(3)
     peak = float(grid.density.max())
     origin = grid.lower + (first[::-1] + 0.5) * size
-    return Work(grid.density[box] / peak, edges, origin, edge, peak)
+    return Work(grid.density[box] / peak, edges, origin, edge, peak, len(where))
 
 
 def list_pairs(work: Work, centers: Array, radii: Array, kernel: Kernel) -> Pairs:
@@ -155,8 +174,11 @@ def list_pairs(work: Work, centers: Array, radii: Array, kernel: Kernel) -> Pair
                 reach[axis] - inside[some, axis, None] for axis in range(3)
             )  # (B, S)
             q = (x * x + y * y + z * z) / (radii[some] ** 2)[:, None]
-            row, column = np.nonzero(q < 1.0)
-            places.append(np.stack([part[row, column] for part in (x, y, z, q)]))
+            near = q < 1.0
+            flat = np.flatnonzero(near)
+            row = np.repeat(np.arange(len(some)), np.count_nonzero(near, axis=1))
+            column = flat - row * len(offsets)
+            places.append(np.stack([part.ravel()[flat] for part in (x, y, z, q)]))
             members.append(some[row])
             voxels.append(corner[some[row]] + shift[column])
     ball, place = np.concatenate(members), np.concatenate(places, axis=1)
@@ -169,8 +191,11 @@ def list_pairs(work: Work, centers: Array, radii: Array, kernel: Kernel) -> Pair
         value=profile_of(place[3], kernel),
         starts=starts,
         owners=ball[starts],
+        lengths=np.diff(starts, append=len(ball)),
         count=len(radii),
         target=target.ravel(),
+        shape=shape,
+        corner=(int(-low[2]), int(-low[1]), int(-low[0])),
     )
 
 

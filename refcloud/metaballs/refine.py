@@ -37,54 +37,82 @@ class Fit:
     heights: Array
 
 
+@dataclass(frozen=True)
+class Listed:
+    """A fit on a grid, the pairs of its balls there, and what it leaves.
+
+    Attributes
+    ----------
+    fit, pairs
+        The balls, and their pairs with the grid's voxels.
+    residual
+        Density minus the balls', at every voxel of the pairs' box.
+    cost
+        Its squares' sum.
+    """
+
+    fit: Fit
+    pairs: Pairs
+    residual: Array
+    cost: float
+
+
+def listed(work: Work, fit: Fit, kernel: Kernel, pairs: Pairs | None = None) -> Listed:
+    """List a fit's pairs, unless they are known, and what it leaves."""
+    if pairs is None:
+        pairs = list_pairs(work, fit.centers, fit.radii, kernel)
+    residual = pairs.target - pairs.forward(fit.heights)
+    return Listed(fit, pairs, residual, dot(residual, residual))
+
+
 def refine(
     work: Work,
-    fit: Fit,
+    state: Listed,
     kernel: Kernel,
     *,
     steps: int,
     least_radius: float,
-    observe: Callable[[int, Fit], object],
-) -> Fit:
+    inner: int = INNER_STEPS,
+    observe: Callable[[int, Fit], object] | None = None,
+) -> Listed:
     """Move all balls to lower the squared error over all voxels.
 
     Formula: (J^T J + mu diag J^T J) s = J^T (y - g), a step s for (c, log R, v)
     """
     damping = DAMPING
-    pairs = list_pairs(work, fit.centers, fit.radii, kernel)
-    residual = pairs.target - pairs.forward(fit.heights)
-    cost = dot(residual, residual)
-    jacobian = _jacobian(pairs, fit, kernel)
+    jacobian = _jacobian(state.pairs, state.fit, kernel) if steps else np.zeros((5, 0))
     for number in range(steps):
-        step = _solve(pairs, jacobian, residual, damping)
-        trial = _moved(work, fit, step, least_radius)
-        listed = list_pairs(work, trial.centers, trial.radii, kernel)
-        left = listed.target - listed.forward(trial.heights)
-        trial_cost = dot(left, left)
-        if trial_cost < cost:
-            fit, pairs, residual, cost = trial, listed, left, trial_cost
-            jacobian = _jacobian(pairs, fit, kernel)
+        step = _solve(state.pairs, jacobian, state.residual, damping, inner)
+        trial = listed(work, _moved(work, state.fit, step, least_radius), kernel)
+        if trial.cost < state.cost:
+            state = trial
             damping *= EASE
+            if number + 1 < steps:
+                jacobian = _jacobian(state.pairs, state.fit, kernel)
         else:
             damping *= HARDEN
-        observe(number + 1, fit)
-    return fit
+        if observe is not None:
+            observe(number + 1, state.fit)
+    return state
 
 
 def _jacobian(pairs: Pairs, fit: Fit, kernel: Kernel) -> Array:
     """Differentiate the field at each pair by (c, log R, v), shape (5, P)."""
-    slope = fit.heights[pairs.ball] * slope_of(pairs.q, kernel)
-    squared = fit.radii[pairs.ball] ** 2
-    return np.concatenate(
-        [
-            pairs.away * (-2.0 * slope / squared),
-            (-2.0 * slope * pairs.q)[None],
-            pairs.value[None],
-        ]
-    )
+    slope = pairs.spread(-2.0 * fit.heights) * slope_of(pairs.q, kernel)
+    jacobian = np.empty((5, len(pairs.q)))
+    np.multiply(pairs.away, slope * pairs.spread(fit.radii**-2.0), out=jacobian[:3])
+    np.multiply(slope, pairs.q, out=jacobian[3])
+    jacobian[4] = pairs.value
+    return jacobian
 
 
-def _solve(pairs: Pairs, jacobian: Array, residual: Array, damping: float) -> Array:
+def _solve(
+    pairs: Pairs,
+    jacobian: Array,
+    residual: Array,
+    damping: float,
+    inner: int = INNER_STEPS,
+) -> Array:
     """Solve for the step, shape (5, N), by conjugate gradients with 5 x 5 blocks."""
     gradient = pairs.by_ball(jacobian * residual[pairs.voxel])
     blocks = np.zeros((pairs.count, 5, 5))
@@ -99,8 +127,7 @@ def _solve(pairs: Pairs, jacobian: Array, residual: Array, damping: float) -> Ar
     inverse = np.linalg.inv(blocks)  # (N, 5, 5)
 
     def times(s: Array) -> Array:
-        parts = np.einsum("cp,cp->p", jacobian, s[:, pairs.ball])
-        image = np.bincount(pairs.voxel, parts, minlength=len(residual))
+        image = pairs.by_voxel((jacobian * pairs.spread(s)).sum(axis=0))
         return pairs.by_ball(jacobian * image[pairs.voxel]) + extra * s
 
     def condition(s: Array) -> Array:
@@ -111,7 +138,7 @@ def _solve(pairs: Pairs, jacobian: Array, residual: Array, damping: float) -> Ar
     guess = condition(left)
     direction, power = guess, float((left * guess).sum())
     first = power
-    for _ in range(INNER_STEPS):
+    for _ in range(inner):
         if power <= INNER_SHARE**2 * first or power <= 0.0:
             break
         image = times(direction)

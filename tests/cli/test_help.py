@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import refcloud as rc
+from refcloud.cli.approximate import Outputs
 from refcloud.cli.bench import Measurement
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
@@ -23,7 +24,7 @@ from refcloud.noise_pictures import noise_picture
 # What each command takes its options from, and the parameters that words cannot give.
 SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "generate": [(rc.generate, {"observe"})],
-    "approximate": [(rc.approximate, {"grid", "observe"})],
+    "approximate": [(rc.approximate, {"grid", "observe"}), (Outputs, set())],
     "render": [
         (rc.render, {"cloud", "camera", "suns", "medium", "haze", "observe"}),
         (rc.Camera, {"width", "height"}),

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import refcloud as rc
+from refcloud.fit_pictures import fit_pictures
 
 SMALL = "--diameters 20 11 11 --cell 3 --relief 2 --voxel 1"
 ROOT = Path(__file__).parents[2]
@@ -102,7 +103,58 @@ def test_approximate_prints_the_errors_of_what_it_wrote(
     assert f"over occupied voxels: {errors.occupied:.4f}\n" in out
     x, y, z = errors.projected
     assert f"optical depth: x {x:.4f}, y {y:.4f}, z {z:.4f}\n" in out
+    shown = fit_pictures(cloud[0], balls)
+    assert f"rendered picture: {shown.error:.4f}\n" in out
     assert "seconds: load " in out
+
+
+def test_approximate_draws_what_it_fitted_and_says_what_it_tried(
+    cloud, run, small
+) -> None:
+    status, out, _ = run(
+        "approximate", "small-voxels.npz", "--tolerance", 0.5, "--picture", "fit.png"
+    )
+    assert status == 0
+    balls = rc.load_metaballs(out.splitlines()[-1])
+    expected = rc.approximate(cloud[0], tolerance=0.5)
+    assert balls.radii.tobytes() == expected.radii.tobytes()
+    tried = re.findall(r"^tried (\d+) balls, relative RMSE (\S+)$", out, re.M)
+    assert len(tried) >= 2
+    assert rc.errors_of_fit(cloud[0], balls).density <= 0.5
+    assert "voxels, balls and difference: fit.png\n" in out
+    assert same_bytes(fit_pictures(cloud[0], balls).side_by_side(), "fit.png")
+
+
+def test_levels_go_from_one_file_to_a_picture(cloud, run, small) -> None:
+    done = run("approximate", "small-voxels.npz", "--levels", "--seed", 3)
+    assert done.status == 0
+    assert done.out.splitlines()[-1] == "small-levels.npz"
+    levels = rc.load_levels("small-levels.npz")
+    expected = rc.levels_of_detail(cloud[0], seed=3)
+    assert levels.finest.radii.tobytes() == expected.finest.radii.tobytes()
+    assert done.out.count("rendered picture") == len(levels.levels)
+    size = ["--width", 24, "--height", 18]
+    coarse = run("render", "small-levels.npz", *size, "--tolerance", 1, "-o", "a.png")
+    fine = run("render", "small-levels.npz", *size, "--tolerance", 0, "-o", "b.png")
+    assert f"level of {len(levels.finest)} balls\n" in fine.out
+    assert f"level of {len(levels.finest)} balls\n" not in coarse.out
+    assert same_bytes(rc.render(levels.finest, width=24, height=18), "b.png")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--count", "5", "--tolerance", "0.5"], "tolerance: expected none beside"),
+        (["--levels", "--count", "5"], "--levels: expected no other option"),
+        (["--picture", "fit.gif"], "expected a name ending in .png or .npy"),
+        (["--tolerance", "1"], "--tolerance: expected a finite number in (0, 1)"),
+    ],
+)
+def test_approximate_refuses_in_one_line(words, message, run, small) -> None:
+    status, out, err = run("approximate", "small-voxels.npz", *words)
+    assert (status, out) == (2, "")
+    assert message in err
+    assert err.count("\n") == 1
 
 
 def test_render_takes_every_option_to_the_library(cloud, run, small) -> None:

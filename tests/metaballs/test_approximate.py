@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from twins.metaballs import kernels, seeds
 
+import refcloud
 from refcloud.cloudmap.voxels import VoxelGrid
 from refcloud.metaballs import (
     Metaballs,
@@ -21,7 +26,8 @@ from refcloud.metaballs import (
 from refcloud.metaballs.pairs import list_pairs, prepare
 from refcloud.noise.hashing import uniform
 
-METHODS = ["quick", "standard", "man"]
+METHODS = ["quick", "standard", "full", "man"]
+ALL = [*METHODS, "uniform", "random", "orthogonal", "subtract"]
 KERNELS = ["wyvill", "gaussian"]
 
 
@@ -59,9 +65,10 @@ def test_refinement_only_lowers_the_error(cloud, seed):
         *(approximate(grid, count=25, refine_steps=n) for n in (0, 1, 3, 8)),
     ]
     errors = [errors_of_fit(grid, fit).density for fit in fits]
-    assert bits(fits[0]) == bits(fits[1])
-    # Each ends with optimal heights: only their tolerance of 1e-8 may show.
-    assert all(b <= a + 1e-7 for a, b in pairwise(errors))
+    assert fits[0].radii.tobytes() == fits[1].radii.tobytes()
+    # Each ends with heights that are optimal to 1e-6: H is above its least by 1e-12
+    # times the condition, below 100, and the error by half of that over itself.
+    assert all(b <= a + 1e-9 for a, b in pairwise(errors))
 
 
 def test_quick_heights_meet_the_conditions_on_all_voxels(cloud):
@@ -72,11 +79,13 @@ def test_quick_heights_meet_the_conditions_on_all_voxels(cloud):
     centers = (balls.centers - work.origin) / work.edge
     pairs = list_pairs(work, centers, balls.radii / work.edge, "wyvill")
     residual = pairs.target - pairs.forward(balls.densities / work.peak)
-    slope = pairs.backward(residual) / np.sqrt(pairs.by_ball(pairs.value**2))
-    assert np.abs(slope).max() < 1e-6 * np.linalg.norm(pairs.target)
+    scale = np.sqrt(pairs.by_ball(pairs.value**2))
+    slope = np.linalg.norm(pairs.backward(residual) / scale)
+    # Optimal to 1e-6 of the right side, in the same scale.
+    assert slope < 1.01e-6 * np.linalg.norm(pairs.backward(pairs.target) / scale)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ALL)
 @pytest.mark.parametrize("kernel", KERNELS)
 @settings(max_examples=15)
 @given(seed=seeds, shape=st.tuples(*[st.integers(1, 5)] * 3), share=st.floats(0.0, 1.0))
@@ -104,18 +113,20 @@ EDGE_CASES = {
 EDGE_CASES["two far apart"][-1, -1, -1] = 1.0
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ALL)
 @pytest.mark.parametrize("case", EDGE_CASES)
 def test_edge_cases(case, method):
     grid = grid_of(EDGE_CASES[case])
     balls = approximate(grid, count=20, method=method)
     occupied = int((grid.density > 0.0).sum())
     assert 1 <= len(balls) <= min(20, occupied)
-    # A sheet is the worst: a ball is not flat.
-    assert errors_of_fit(grid, balls).density < (0.8 if case == "sheet" else 0.5)
+    # A sheet is the worst: a ball is not flat. Methods that do not cluster leave gaps.
+    most = 0.8 if case == "sheet" else 0.5
+    most = most if method in METHODS else 0.85
+    assert errors_of_fit(grid, balls).density < most
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ALL)
 def test_an_empty_cloud_has_no_balls(method):
     grid = grid_of(np.zeros((3, 2, 4)))
     balls = approximate(grid, method=method)
@@ -131,7 +142,7 @@ def test_e16_count_is_the_number_of_balls(cloud):
         assert len(approximate(cloud(), count=count, method="man")) == count
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ALL)
 @pytest.mark.parametrize("offset", [0.0, 1e6])
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
 def test_neither_place_nor_unit_shows(cloud, method, offset, scale):
@@ -147,7 +158,7 @@ def test_neither_place_nor_unit_shows(cloud, method, offset, scale):
     assert b.densities.tobytes() == a.densities.tobytes()
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ALL)
 @pytest.mark.parametrize("exponent", [-300, -6, 6, 300])
 def test_the_unit_of_density_does_not_show(cloud, method, exponent):
     plain = approximate(cloud(), count=20, method=method)
@@ -157,14 +168,14 @@ def test_the_unit_of_density_does_not_show(cloud, method, exponent):
     assert ratio == pytest.approx(errors_of_fit(cloud(), plain).density, rel=0.02)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ALL)
 def test_empty_cells_around_the_cloud_do_not_show(cloud, method):
     a, b = (approximate(cloud(pad=pad), count=15, method=method) for pad in (0, 6))
     np.testing.assert_allclose(a.centers, b.centers, atol=1e-12)
     assert a.densities.tobytes() == b.densities.tobytes()
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ALL)
 def test_cells_need_not_be_cubes(cloud, method):
     # The same ball of density, sampled by flat cells and by cubes of equal volume.
     errors = []
@@ -238,7 +249,10 @@ def test_projected_errors_are_of_sums_along_each_axis():
     ("arguments", "message"),
     [
         ({"count": 0}, "count: expected a whole number"),
-        ({"method": "best"}, "method: expected one of 'quick', 'standard', 'man'"),
+        (
+            {"method": "best"},
+            "method: expected one of 'quick', 'standard', 'full', 'man', 'uniform'",
+        ),
         ({"overlap": 0.0}, "overlap: expected a finite number"),
         ({"kernel": "cosine"}, "kernel: expected one of"),
         ({"least_radius": 0.0}, "least_radius: expected a finite number"),
@@ -268,3 +282,46 @@ def test_balls_over_too_many_cells_are_refused_before_memory_is_taken() -> None:
     thin = VoxelGrid(density, np.zeros(3), np.array([20_000.0, 1.0, 1.0]))
     with pytest.raises(ValueError, match="expected balls that"):
         approximate(thin, count=1, overlap=2.2)
+
+
+@pytest.mark.parametrize("method", ALL)
+def test_a_voxel_cut_into_eight_equal_ones_is_the_same_cloud(cloud, method):
+    # Duplicated values, many ties: the balls are others, what they stand for is not.
+    grid = cloud()
+    fine = VoxelGrid(
+        grid.density.repeat(2, 0).repeat(2, 1).repeat(2, 2), grid.lower, grid.upper
+    )
+    a, b = (approximate(g, count=25, method=method) for g in (grid, fine))
+    errors = [errors_of_fit(g, balls).density for g, balls in ((grid, a), (fine, b))]
+    # The steps between voxels are part of the cloud now: up to half as much again.
+    assert errors[1] < 1.75 * errors[0]
+    masses = [float((balls.densities * balls.radii**3).sum()) for balls in (a, b)]
+    assert masses[1] == pytest.approx(masses[0], rel=0.15)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["quick", "full"])
+def test_the_number_of_threads_shows_in_no_bit(method):
+    code = (
+        "import hashlib, numpy as np\n"
+        "from refcloud import approximate, generate\n"
+        f"b = approximate(generate(), count=1000, method={method!r})\n"
+        "parts = (b.centers, b.radii, b.densities)\n"
+        "print(hashlib.sha256(b''.join(p.tobytes() for p in parts)).hexdigest())\n"
+    )
+    found = set()
+    for threads in ("1", "2", "4"):
+        names = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            env={
+                **os.environ,
+                **dict.fromkeys(names, threads),
+                "PYTHONPATH": str(Path(refcloud.__file__).parents[1]),
+            },
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        found.add(done.stdout)
+    assert len(found) == 1

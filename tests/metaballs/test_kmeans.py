@@ -162,4 +162,7 @@ def test_voxels_at_the_rim_weigh_more():
     weights = voxel_weights(density, np.ones(3), 6.0, 1.5).reshape(7, 7, 7)
     assert weights[0, 3, 3] == pytest.approx(1.2 * (1 + 6 * np.exp(-1 / 1.5)))
     assert weights[3, 3, 3] < weights[1, 3, 3] < weights[0, 3, 3]
-    assert np.all(voxel_weights(density, np.ones(3), 0.0, 1.5) == 1.2)
+    assert np.all(voxel_weights(density, np.ones(3), 0.0, 1.5) == 1.0)
+    density[4, 4, 4] = 0.25
+    plain = voxel_weights(density, np.ones(3), 0.0, 1.5).reshape(7, 7, 7)
+    assert plain[3, 3, 3] == 0.25**1.5

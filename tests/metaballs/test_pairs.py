@@ -13,7 +13,7 @@ from twins.metaballs import kernels, scattered, seeds
 from refcloud.cloudmap.voxels import VoxelGrid
 from refcloud.metaballs import profile
 from refcloud.metaballs.pairs import Pairs, Work, list_pairs, prepare
-from refcloud.metaballs.refine import Fit, _jacobian, _solve, refine
+from refcloud.metaballs.refine import Fit, _jacobian, _solve, listed, refine
 from refcloud.noise.hashing import uniform
 
 edges_drawn = st.sampled_from([(1.0, 1.0, 1.0), (0.5, 2.0, 1.0), (2.0, 2.0, 0.25)])
@@ -160,5 +160,7 @@ def test_steps_never_raise_the_error_and_keep_the_bounds(seed, kernel):
             assert now.radii.min() >= 0.7
 
     watch(0, fit)
-    refine(work, fit, kernel, steps=6, least_radius=0.7, observe=watch)
+    state = listed(work, fit, kernel)
+    end = refine(work, state, kernel, steps=6, least_radius=0.7, observe=watch)
+    assert end.cost == pytest.approx(costs[-1], rel=1e-12)
     assert all(b <= a for a, b in pairwise(costs))

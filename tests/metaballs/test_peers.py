@@ -36,21 +36,62 @@ def peer_error(work, count: int, seed: int) -> float:
     return min(errors)
 
 
+def error_of(work, balls) -> float:
+    centers = (balls.centers - work.origin) / work.edge
+    pairs = list_pairs(work, centers, balls.radii / work.edge, "wyvill")
+    left = pairs.target - pairs.forward(balls.densities / work.peak)
+    return float(np.linalg.norm(left) / np.linalg.norm(pairs.target))
+
+
+# How far the error lies below the peer's: the median of three of the paper's clouds.
+# What was measured is 2 to 16 points more; the peer here takes its best of overlaps.
+GOALS = {
+    ("quick", 30): 0.07,
+    ("quick", 100): 0.09,
+    ("quick", 1000): 0.015,
+    ("standard", 30): 0.17,
+    ("standard", 100): 0.21,
+    ("standard", 1000): 0.29,
+    ("full", 30): 0.19,
+    ("full", 100): 0.25,
+    ("full", 1000): 0.41,
+}
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("shape", ["cumulus", "ellipsoid"])
 @pytest.mark.parametrize("count", [30, 100, 1000])
-def test_standard_is_no_worse_than_kmeans_and_ridge(shape, count):
+def test_errors_are_below_those_of_kmeans_and_ridge(count):
     pytest.importorskip("sklearn", reason="needs scikit-learn (extra: bench)")
-    grid = generate(shape)
+    below: dict[str, list[float]] = {"quick": [], "standard": [], "full": []}
+    for cloud in (1, 2, 3):
+        grid = generate("ellipsoid", seed=cloud)
+        work = prepare(grid)
+        assert work is not None
+        seeds = (0, 1, 2) if count < 1000 else (0,)
+        theirs = np.median([peer_error(work, count, seed) for seed in seeds])
+        for method, found in below.items():
+            ours = np.median(
+                [
+                    error_of(
+                        work, approximate(grid, count=count, seed=seed, method=method)
+                    )
+                    for seed in seeds
+                ]
+            )
+            found.append(1.0 - float(ours / theirs))
+    print(count, below)
+    for method, found in below.items():
+        assert np.median(found) >= GOALS[method, count], method
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("count", "few"), [(1000, 200), (3000, 450)])
+def test_few_balls_err_as_little_as_the_peers_many(count, few):
+    pytest.importorskip("sklearn", reason="needs scikit-learn (extra: bench)")
+    grid = generate("ellipsoid", seed=2)
     work = prepare(grid)
     assert work is not None
-    theirs = [peer_error(work, count, seed) for seed in (0, 1, 2)]
-    ours = []
-    for seed in (0, 1, 2):
-        balls = approximate(grid, count=count, seed=seed)
-        centers = (balls.centers - work.origin) / work.edge
-        pairs = list_pairs(work, centers, balls.radii / work.edge, "wyvill")
-        left = pairs.target - pairs.forward(balls.densities / work.peak)
-        ours.append(float(np.linalg.norm(left) / np.linalg.norm(pairs.target)))
-    print(f"{shape} {count}: ours {np.median(ours):.4f}, peer {np.median(theirs):.4f}")
-    assert np.median(ours) <= np.median(theirs)
+    ours = error_of(work, approximate(grid, count=few, method="full"))
+    theirs = peer_error(work, count, 0)
+    print(f"full with {few}: {ours:.4f}, peer with {count}: {theirs:.4f}")
+    assert ours <= theirs

@@ -10,11 +10,17 @@ from refcloud.cloudmap.voxels import VoxelGrid, cell_centres
 from refcloud.metaballs.choices import spread_start, start_patterns, visits
 from refcloud.noise.hashing import uniform
 from refcloud.plain import metaballs as plain
+from refcloud.plain import placing
 from twins import twin
 
 COMPOSED = "composed of functions that have rows; judged by its error, like any fit"
 WITHOUT = {
     "refcloud.metaballs.approximate.approximate": COMPOSED,
+    "refcloud.metaballs.direct.direct_metaballs": COMPOSED,
+    "refcloud.metaballs.levels.levels_of_detail": COMPOSED,
+    "refcloud.metaballs.levels.choose_level": "looks a row up; judged by pictures",
+    "refcloud.metaballs.levels_file.save_levels": "writes a file",
+    "refcloud.metaballs.levels_file.load_levels": "reads a file",
     "refcloud.metaballs.file.save_metaballs": "writes a file",
     "refcloud.metaballs.file.load_metaballs": "reads a file",
 }
@@ -275,6 +281,35 @@ def non_negative_least_squares(draw):
     right = (uniform(9, np.arange(len(gram)), seed=seed) - 0.5) * 4.0
     actual = array.non_negative_least_squares(gram, right)
     return actual, plain.non_negative_least_squares(gram.tolist(), right.tolist(), 300)
+
+
+@twin(
+    array.orthogonal_least_squares,
+    placing.orthogonal_least_squares,
+    tolerance=0.0,
+    why="the same columns in the same order",
+)
+def orthogonal_least_squares(draw):
+    seed, columns = draw(seeds), draw(st.integers(1, 5))
+    design = overlapping(seed, 8, columns)
+    y = uniform(10, np.arange(8), seed=seed)
+    count = draw(st.integers(1, 6))
+    expected = placing.orthogonal_least_squares(design.tolist(), y.tolist(), count)
+    return array.orthogonal_least_squares(design, y, count), expected
+
+
+@twin(
+    array.place_and_subtract, placing.place_and_subtract, tolerance=2.4e-14, why=SUMMED
+)
+def place_and_subtract(draw):
+    shape = draw(st.tuples(*[st.integers(1, 4)] * 3))
+    density = uniform(np.arange(np.prod(shape)), seed=draw(seeds)).reshape(shape)
+    edges = draw(st.sampled_from([(1.0, 1.0, 1.0), (0.5, 2.0, 1.0)]))
+    radii = draw(st.sampled_from([(1.1,), (0.6, 1.3, 2.2)]))
+    count = draw(st.integers(1, 4))
+    expected = placing.place_and_subtract(density.tolist(), edges, radii, count=count)
+    actual = array.place_and_subtract(density, edges, radii, count=count)
+    return actual, np.array(expected).reshape(-1, 5)
 
 
 @twin(array.errors_of_fit, plain.errors_of_fit, tolerance=2.4e-14, why=SUMMED)
