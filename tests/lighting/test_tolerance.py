@@ -23,9 +23,8 @@ from refcloud.camera import Camera
 from refcloud.lighting import Haze, Look, eyeward, sunward
 from refcloud.metaballs import Metaballs
 
-# The two orders of drawing round apart, by last bits of a few dozen sums.
-ROUNDED = 1e-12
 tolerances = st.floats(-4.0, np.log10(0.3)).map(lambda power: 10.0**power)
+ROUNDED = 1e-12  # the two orders of drawing differ by last bits of a few dozen sums
 backdrops = st.sampled_from([None, BACKDROP, np.zeros_like(BACKDROP)])
 hazes = st.none() | st.builds(Haze, colours, st.floats(1.0, 50.0))
 
@@ -76,14 +75,22 @@ def test_faint_balls_are_left_out_counted_and_bounded() -> None:
 
 
 def test_balls_behind_an_opaque_front_are_left_out_and_counted() -> None:
-    spots = [[0, 0, 2], [0, 0, -2], [0.1, 0, -3]]
-    balls = Metaballs(spots, [2.0, 0.3, 0.3], [1e3, 1.0, 1.0])
-    rules = dataclasses.replace(LOOKS["man"], tau=None, transmittance="beer")
-    lit = sunward(balls, SUNS, medium=MEDIUM, look=rules)
-    _, rows = eyeward(lit, EYE, background=BACKDROP, tolerance=0.01)
-    (row,) = [row for row in rows if "opaque" in row.what]
-    assert (row.skipped, row.of) == (2, 3)
-    assert row.bound <= 0.01
+    # One thick ball before forty small ones; tiles in its middle see it alone.
+    small = scattered_balls(3, 40)
+    behind = small.centers * 0.2 - [0.0, 0.0, 3.0]
+    balls = Metaballs(
+        np.vstack([[0, 0, 2], behind]),
+        np.append(2.0, np.full(40, 0.3)),
+        np.append(1e3, np.ones(40)),
+    )
+    eye = Camera(EYE.eye, EYE.target, width=96, height=72)
+    for look in LOOKS.values():
+        rules = dataclasses.replace(look, tau=None, transmittance="beer")
+        lit = sunward(balls, SUNS, medium=MEDIUM, look=rules)
+        _, rows = eyeward(lit, eye, tolerance=0.01)
+        (row,) = [row for row in rows if "opaque" in row.what]
+        assert 40 <= row.skipped < row.of
+        assert 0.0 < row.bound <= 0.01
 
 
 def test_the_exact_picture_reports_what_cannot_show() -> None:
