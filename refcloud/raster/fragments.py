@@ -139,7 +139,7 @@ def draw_fragments(
     refuse_other_box("depth", depths, rows, columns)
 
     # 1. Scissor: what lies outside of it is never drawn.
-    box = _scissored(state, rows, columns, buffer)
+    box = scissored(state, rows, columns, height, width)
     inner = tuple(
         slice(part.start - whole.start, part.stop - whole.start)
         for part, whole in zip(box, (rows, columns), strict=True)
@@ -205,7 +205,7 @@ def clear(
     array([1., 1., 1., 0.])
     """
     height, width, _ = buffer.pixels.shape
-    box = _scissored(state, slice(0, height), slice(0, width), buffer)
+    box = scissored(state, slice(0, height), slice(0, width), height, width)
     if color is not None:
         kept = stored(color, buffer.format, arithmetic=buffer.arithmetic)
         for channel in _written(state):
@@ -214,24 +214,37 @@ def clear(
         buffer.depth[box] = depth
 
 
-def _scissored(
-    state: State, rows: slice, columns: slice, buffer: Framebuffer
+def scissored(
+    state: State, rows: slice, columns: slice, height: int, width: int
 ) -> tuple[slice, slice]:
-    """Give the part of a box that the scissor lets by; it may be empty."""
+    """Give the part of a box that the scissor lets by, unchecked.
+
+    Parameters
+    ----------
+    state
+        Its scissor may leave the buffer.
+    rows, columns
+        The box.
+    height, width
+        Of the buffer.
+
+    Returns
+    -------
+    Rows and columns; they may be empty.
+    """
     if state.scissor is None:
         return rows, columns
-    height, width, _ = buffer.pixels.shape
-    allowed = (
-        clipped("scissor", part, size)
-        for part, size in zip(state.scissor, (height, width), strict=True)
+    down, across = state.scissor
+    return (
+        _common(rows, clipped("scissor", down, height)),
+        _common(columns, clipped("scissor", across, width)),
     )
-    down, across = (
-        slice(first := max(part.start, whole.start), max(first, min(part.stop, end)))
-        for part, whole, end in zip(
-            allowed, (rows, columns), (rows.stop, columns.stop), strict=True
-        )
-    )
-    return down, across
+
+
+def _common(one: slice, other: slice) -> slice:
+    """Give what two slices share; an empty one where that is nothing."""
+    first = max(one.start, other.start)
+    return slice(first, max(first, min(one.stop, other.stop)))
 
 
 def _written(state: State) -> list[int]:
