@@ -65,7 +65,7 @@ def balls(count: int) -> Metaballs:
     middle = (uniform(cluster[:, None], axis, seed=1) - 0.5) * SPREAD * 2.0
     middle += EXTENT * _in_unit_ball(row, 2)
     centers = middle + PUFF * _in_unit_ball(k, 3)
-    shape = 0.7 + 0.6 * uniform(k, 4, seed=4)
+    shape = 0.85 + 0.7 * np.square(uniform(k, 4, seed=4))  # some are larger
     _, _, _, scale = project(eye(), centers)
     nearest = min(FOOTPRINTS, key=lambda n: abs(math.log(n / count)))
     radii = shape * (FOOTPRINTS[nearest] / float(np.median(shape * scale)))

@@ -14,14 +14,17 @@ from refcloud.camera import AnyCamera
 from refcloud.checking import checked
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
 from refcloud.lighting.colours import Haze
-from refcloud.lighting.flat_tiles import flat_tiles
+from refcloud.lighting.flat_tiles import certified_tiles, flat_balls
 from refcloud.lighting.hidden import without_faint
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.seen import seen_by, shading_of
 from refcloud.lighting.shaded_tiles import shaded_tiles
 from refcloud.raster.canvas import Canvas
-from refcloud.raster.tile_lists import Discs, parts
+from refcloud.raster.tile_lists import parts
 
+# Shares of the tolerance: for balls left out as faint, and for those behind an opaque
+# front where rounding and nodes take the rest; elsewhere the rest is theirs.
+FAINT, OPAQUE = 1.0 / 16.0, 1.0 / 16.0
 ROUNDED = 2.0**-50  # what passes less than this changes the last bits of a sum alone
 
 
@@ -81,7 +84,11 @@ def eyeward(
     behind = 0.0 if background is None else float(background.max(initial=0.0))
     brightest = max(1.0, seen.brightest(), behind)
     visible, rows = without_faint(
-        seen.order, seen.shown, seen.tau.max(axis=0), brightest, tolerance / 2.0
+        seen.order,
+        seen.shown,
+        seen.tau.max(axis=0),
+        brightest,
+        FAINT * tolerance,
     )
     skipped += rows
 
@@ -90,29 +97,28 @@ def eyeward(
     skipped += tables
     drawn = seen.order[visible[seen.order]]
     watch("eye order", drawn)
+    smooth = shading.field is None and shading.detail is None
+    flat = flat_balls(seen, drawn)
+    by_products = smooth and lit.balls.kernel == "wyvill"
 
     # 3. Draw tile after tile, each from the front, before the background.
     # Behind pixels that let no more than this through, all together changes less than
-    # half the tolerance: it is between 0 and the brightest, and is seen through them.
-    least = max(0.5 * tolerance / brightest, ROUNDED)
+    # that share of the tolerance: it is between 0 and the brightest, seen through them.
+    share = OPAQUE if by_products else 1.0 - FAINT
+    least = max(share * tolerance / brightest, ROUNDED)
+    most = (1.0 - FAINT - OPAQUE) * tolerance
     canvas = Canvas(camera.width, camera.height, background)
-    discs = Discs(seen.x[drawn], seen.y[drawn], seen.radius[drawn])
     hidden = entries = 0
-    flat = (
-        shading.field is None
-        and shading.detail is None
-        and lit.balls.kernel == "wyvill"
-    )
-    for lists in parts(discs, camera.width, camera.height):
-        if flat:
-            light, clear, unseen = flat_tiles(lists, discs, seen, drawn, least)
+    for lists in parts(flat.discs, camera.width, camera.height):
+        if by_products:
+            found, rows = certified_tiles(lists, flat, least, most, brightest, behind)
+            skipped += rows
         else:
-            light, clear, unseen = shaded_tiles(lists, seen, drawn, shading, least)
-        canvas.paint(lists, seen.channel_groups(), light, clear)
-        hidden += unseen
+            found = shaded_tiles(lists, seen, drawn, shading, least)
+        canvas.paint(lists, flat.groups, found.light, found.clear)
+        hidden += found.unseen
         entries += len(lists.ball)
     if hidden:
-        bound = least * brightest
         what = "balls of a tile behind opaque ones"
-        skipped.append(Skipped("eye", what, hidden, entries, bound))
+        skipped.append(Skipped("eye", what, hidden, entries, least * brightest))
     return canvas.pixels(), tuple(skipped)

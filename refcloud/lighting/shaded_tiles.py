@@ -15,6 +15,7 @@ import numpy as np
 
 from refcloud.conventions import Array
 from refcloud.lighting.erosion import eroded_of, lit_share_of
+from refcloud.lighting.flat_tiles import Drawn
 from refcloud.lighting.lightfield import field_value_of
 from refcloud.lighting.seen import Seen
 from refcloud.lighting.shading import FRONT, Shading, noise_at
@@ -54,7 +55,7 @@ def shaded_tiles(
     drawn: Whole,
     shading: Shading,
     least: float,
-) -> tuple[Array, Array, int]:
+) -> Drawn:
     """Composite the tiles of balls that are shaded place by place, unchecked.
 
     Parameters
@@ -72,8 +73,7 @@ def shaded_tiles(
 
     Returns
     -------
-    What the balls add, (T, 3, 256); the share of the background that passes, by group
-    of channels, (T, G, 256); and how many list entries lie behind complete pixels.
+    What was drawn of the 256 pixels of each tile.
     """
     groups = seen.channel_groups()
     count = len(lists.count)
@@ -111,7 +111,7 @@ def shaded_tiles(
                     added[channel][at] += opacity * color[channel]
         light[batch] = added.reshape(3, -1, PIXELS).transpose(1, 0, 2)
         clear[batch] = passed.reshape(len(groups), -1, PIXELS).transpose(1, 0, 2)
-    return light, clear, unseen
+    return Drawn(light, clear, unseen)
 
 
 def _samples(

@@ -8,6 +8,7 @@ import numpy as np
 
 from refcloud.conventions import Array
 from refcloud.raster.framebuffer import CHANNELS
+from refcloud.raster.quadratics import Floats
 from refcloud.raster.tile_lists import SIDE, TileLists
 
 
@@ -39,8 +40,8 @@ class Canvas:
         self,
         lists: TileLists,
         groups: Sequence[Sequence[int]],
-        light: Array,
-        clear: Array,
+        light: Floats,
+        clear: Floats,
     ) -> None:
         """Write finished tiles.
 

@@ -52,9 +52,10 @@ def cancelling(
 ) -> NDArray[np.bool_]:
     """Tell which balls' opacities four rounded numbers would change too much.
 
-    The terms of p are up to (1 + d / r)^2 where d, half a tile's diagonal, is their
-    distance from its middle. Opacity rises with p by 3 tau at most, and by
-    1.7 sqrt(tau), for chord and profile (3 in the linear law).
+    The terms of p are up to (1 + d / r)^2 together where d, half a tile's diagonal, is
+    their distance from its middle; each is rounded four times, by half an eps. Opacity
+    rises with p by 3 tau at most, and by 1.7 sqrt(tau), for chord and profile; by 3 in
+    the linear law.
 
     Parameters
     ----------
@@ -71,7 +72,7 @@ def cancelling(
         terms = np.square(1.0 + SIDE * math.sqrt(0.5) / discs.radius)
         deep = np.minimum(3.0 * np.minimum(tau, 1.0), 1.7 * np.sqrt(tau))
         steep = np.full(len(tau), 3.0) if law == "linear" else deep
-        return 4.0 * float(np.finfo(dtype).eps) * terms * steep > most
+        return 2.0 * float(np.finfo(dtype).eps) * terms * steep > most
 
 
 class Quadratics:

@@ -61,6 +61,16 @@ class TileLists:
     count: Whole
     ball: Whole
 
+    def chosen(self, which: Whole) -> TileLists:
+        """Give the lists of some of the tiles."""
+        count = self.count[which]
+        end = np.cumsum(count)
+        pair = np.arange(int(end[-1]) if len(end) else 0)
+        pair += np.repeat(self.first[which] - (end - count), count)
+        return TileLists(
+            self.row[which], self.column[which], end - count, count, self.ball[pair]
+        )
+
 
 @dataclass(frozen=True)
 class Ranges:

@@ -27,10 +27,12 @@ from numpy.typing import NDArray
 from refcloud.conventions import Array
 from refcloud.raster.footprint import Law, Name
 from refcloud.raster.quadratics import FORMS, Floats, Quadratics
-from refcloud.raster.tile_lists import PIXELS, SIDE, Discs, TileLists
+from refcloud.raster.tile_lists import SIDE, Discs, TileLists
 
-TILES, SLOTS = 64, 8  # composited at a time: 2^17 samples, about the cache's size
-MOST_SLOTS = 64  # where a tile has few places
+SAMPLES = 1 << 17  # composited at a time: about what the processor's cache holds
+# Of these, list slots of as many tiles as are at work; few of them at least, so that
+# complete tiles are soon noticed.
+LEAST_SLOTS, MOST_SLOTS = 8, 64
 PER_E = 1.0 / math.log(2.0)  # powers of 2 are the faster ones
 # Where w is not 0 it is above 1e-40: beyond this depth nothing passes there at all.
 DEEPEST = {np.float64: 1e300, np.float32: 1e37}
@@ -109,26 +111,30 @@ def composite(
     light = np.empty((count, channels, size), dtype)
     clear = np.empty((count, size), dtype)
     unseen = 0
-    slots = min(max(SLOTS * PIXELS // size, SLOTS), MOST_SLOTS)
-    space = np.empty((2, slots + 1, TILES, size), dtype)
-    zero = np.zeros((slots, TILES, size), dtype)
+    together = max(SAMPLES // (LEAST_SLOTS * size), 1)
+    room = SAMPLES + together * size
+    space, zeros = np.empty((2, room), dtype), np.zeros(room, dtype)
     ranked = np.argsort(-lists.count, kind="stable")  # lists of like length together
-    for begin in range(0, count, TILES):
-        live = ranked[begin : begin + TILES]
+    for begin in range(0, count, together):
+        live = ranked[begin : begin + together]
         added = np.zeros((len(live), channels, size), dtype)
         through = np.ones((len(live), size), dtype)
         total = np.zeros((len(live), size))  # its log2, in float64: no end, no drift
         slot = 0
         while n := len(live):
             # 1. The next balls of each tile; past a list's end, the empty pair.
+            left = lists.count[live] - slot
+            slots = min(SAMPLES // (n * size), MOST_SLOTS, int(left.max()))
             k = slot + np.arange(slots)[:, None]
             listed = k < lists.count[live]
             pair = np.where(listed, lists.first[live] + k, len(lists.ball))
 
             # 2. What each takes of the light at each place: log2 T, or T - 1.
-            F = space[0, :, :n]  # (slots + 1, tiles, places)
-            taken = F[1:]
-            footprints.taken(pair, live, space[1, 1:, :n], taken, zero[:, :n])
+            shape = slots, n, size
+            every = slots * n * size
+            F = space[0, : every + n * size].reshape(slots + 1, n, size)
+            taken, v = F[1:], space[1, :every].reshape(shape)
+            footprints.taken(pair, live, v, taken, zeros[:every].reshape(shape))
 
             # 3. F, counted from this slot on: what passes the balls before.
             F[0] = 1.0
@@ -138,7 +144,7 @@ def composite(
                 total += taken[-1]
                 np.exp2(taken, out=taken)
             else:
-                taken += zero.dtype.type(1.0)
+                taken += zeros.dtype.type(1.0)
                 for j in range(1, slots):
                     taken[j] *= taken[j - 1]
 
@@ -157,7 +163,7 @@ def composite(
 
             # 5. Lists at their end, and tiles that nothing passes, are complete.
             slot += slots
-            left = lists.count[live] - slot
+            left -= slots
             done = (left <= 0) | (through.max(axis=1) <= least)
             if 4 * np.count_nonzero(done) >= n:
                 unseen += int(np.maximum(left[done], 0).sum())

@@ -118,3 +118,59 @@ def test_the_noise_of_footprints_does_not_change_with_the_tolerance() -> None:
     eye = Camera(EYE.eye, EYE.target, width=60, height=45)
     exact = drawn(near, SUNS, camera=eye)
     assert np.abs(drawn(near, SUNS, camera=eye, tolerance=0.01) - exact).max() <= 0.01
+
+
+WIDE = Camera([0.5, 1.0, 7.0], [0, 0, 0], width=120, height=90)
+SMOOTH = dataclasses.replace(
+    LOOKS["man"], transmittance="beer", scattering="split", tau=None
+)
+# Where float32 and nodes serve: balls of one colour each, before a picture of tiles.
+smooth_looks = st.builds(
+    lambda law, name: dataclasses.replace(SMOOTH, transmittance=law, footprint=name),
+    st.sampled_from(["beer", "linear"]),
+    st.sampled_from(["chord", "profile"]),
+)
+
+
+@settings(max_examples=40)
+@given(
+    seeds,
+    st.integers(1, 150),
+    st.floats(-1.5, 1.0),
+    st.floats(-2.0, 2.0),
+    smooth_looks,
+    media,
+    st.floats(-5.3, -0.5).map(lambda power: 10.0**power),
+    st.sampled_from([0.0, 1.0, 20.0]),
+)
+def test_nor_do_float32_and_nodes(
+    seed, count, size, depth, look, medium, tolerance, behind
+) -> None:
+    balls = scattered_balls(seed, count)
+    balls = dataclasses.replace(
+        balls,
+        radii=10.0**size * balls.radii,
+        densities=10.0 ** (depth - size) * balls.densities,
+    )
+    lit = sunward(balls, SUNS, medium=medium, look=look)
+    background = np.full((90, 120, 3), behind) if behind else None
+    exact, _ = eyeward(lit, WIDE, background=background)
+    found, rows = eyeward(lit, WIDE, background=background, tolerance=tolerance)
+    assert np.abs(found - exact).max() <= tolerance
+    bounds = [row.bound for row in rows if row.stage == "eye"]
+    assert sum(bounds) <= tolerance * (1.0 + 1e-9)
+
+
+def test_each_saving_is_counted_with_its_bound() -> None:
+    balls = scattered_balls(2, 60)
+    wide = dataclasses.replace(balls, radii=3.0 * balls.radii)
+    lit = sunward(wide, SUNS, medium=MEDIUM, look=SMOOTH)
+    eye = dataclasses.replace(WIDE, width=240, height=180)
+    _, none = eyeward(lit, eye)
+    assert not any(row.bound > 1e-12 for row in none)
+    rows = {row.what: row for row in eyeward(lit, eye, tolerance=0.02)[1]}
+    double = rows["tiles in double precision"]
+    assert 0 < double.skipped == double.of
+    between = rows["pixels between nodes of smooth tiles"]
+    assert 0 < between.skipped < between.of == double.of * 256
+    assert double.bound + between.bound < 0.02

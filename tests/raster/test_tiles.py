@@ -14,7 +14,7 @@ from refcloud.raster import framebuffer, tile_lists, tiles
 from refcloud.raster.canvas import Canvas
 from refcloud.raster.quadratics import cancelling
 from refcloud.raster.splat import splat_of
-from refcloud.raster.tile_lists import SIDE, Discs, parts, ranges_of
+from refcloud.raster.tile_lists import PIXELS, SIDE, Discs, parts, ranges_of
 from refcloud.raster.tiles import composite, pixel_places
 
 # Worst seen 9e-15 in 3000 scenes; the bound on a ball whose terms cancel is 1e-13.
@@ -110,8 +110,9 @@ def test_what_lies_behind_an_opaque_front_is_not_drawn_and_hardly_shows(law) -> 
     exact, none = tiled(size, discs, tau, colours, "chord", law)
     for least in (1e-9, 1e-4, 1e-2):
         found, unseen = tiled(size, discs, tau, colours, "chord", law, least=least)
-        assert unseen > none
-        assert 0.0 < np.abs(found - exact).max() <= least
+        assert unseen >= none
+        assert np.abs(found - exact).max() <= least
+    assert unseen > none
 
 
 def test_ten_thousand_transmittances_in_a_row() -> None:
@@ -178,5 +179,9 @@ def test_a_picture_made_in_parts_is_the_same(seed: int, power, most) -> None:
 
 def test_no_product_is_large_enough_for_a_second_thread() -> None:
     # OpenBLAS takes more threads from rows x inner x columns of 2^18 on.
-    assert tiles.TILES * 4 * SIDE * SIDE < 2**18
-    assert 3 * (tiles.MOST_SLOTS + 1) * SIDE * SIDE < 2**18
+    for size in (8, 64, 144, PIXELS):
+        together = tiles.SAMPLES // (tiles.LEAST_SLOTS * size)
+        assert together * 4 * size < 2**18
+        assert 3 * (tiles.MOST_SLOTS + 1) * size < 2**18
+        # Nodes to pixels, and to the last terms.
+        assert 4 * size * PIXELS < 2**18 or size == PIXELS
