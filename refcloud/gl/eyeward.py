@@ -16,10 +16,11 @@ from refcloud.camera import AnyCamera
 from refcloud.checking import checked
 from refcloud.cloudmap import cell_size
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
+from refcloud.gl.fragments import clear
 from refcloud.gl.quads import ball_rows, bind, compiled, draw, set_uniforms
 from refcloud.gl.shaders import BALL, DETAIL, FIELD, FIXED, HAZE, eyeward_source
 from refcloud.gl.tables import cells_from, table
-from refcloud.gl.target import framebuffer, read_pixels, write_pixels
+from refcloud.gl.target import Target, framebuffer, read_pixels, write_pixels
 from refcloud.lighting.colours import Haze
 from refcloud.lighting.hidden import without_faint
 from refcloud.lighting.lit import LitMetaballs
@@ -95,26 +96,39 @@ def eyeward(
     # 2. The framebuffer starts as what lies behind. Light is counted in a unit that
     #    keeps it near 1: float32 has no room for every irradiance.
     unit = 2.0 ** math.floor(math.log2(brightest))
-    first = np.zeros((*size, 4))
-    if background is not None:
-        first[..., :3], first[..., 3] = background / unit, 1.0
     target = framebuffer(camera.width, camera.height)
     quads = _quads_for(seen, shading)
     held = _shared_tables(quads, shading, unit)
 
     # 3. Draw, far to near. A grey medium needs one pass, a coloured one three (L12).
-    pixels = np.zeros((*size, 4))
+    parts = []
     for channels in seen.channel_groups():
-        write_pixels(target, first)
+        _start(target, background, unit)
         rows = _table_of(seen, shading, drawn, channels[0], unit)
         balls = table(rows.reshape(-1, 4))  # held until all is drawn
         bind(target, balls, rows.shape[1], quads)
         draw(quads, len(rows))
-        part = read_pixels(target, slice(None), slice(None))
-        pixels[..., channels] = part[..., channels] * unit
-        pixels[..., 3] += part[..., 3] * (len(channels) / 3.0)
+        parts.append((channels, read_pixels(target, slice(None), slice(None))))
     del held
+    pixels = parts[0][1]
+    if len(parts) > 1:
+        alpha = sum(part[..., 3] * (len(channels) / 3.0) for channels, part in parts)
+        for channels, part in parts:
+            pixels[..., channels] = part[..., channels]
+        pixels[..., 3] = alpha
+    if unit != 1.0:
+        pixels[..., :3] *= unit
     return pixels, tuple(skipped)
+
+
+def _start(target: Target, background: Array | None, unit: float) -> None:
+    """Fill the framebuffer with what lies behind, or with nothing."""
+    if background is None:
+        clear(target, np.zeros(4))
+        return
+    behind = np.ones((*background.shape[:2], 4))
+    np.divide(background, unit, out=behind[..., :3])
+    write_pixels(target, behind)
 
 
 def _table_of(

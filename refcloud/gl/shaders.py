@@ -22,12 +22,16 @@ uniform int columns;  // of the table, for each ball
 uniform vec2 size;  // of the picture, pixels
 flat out int first;
 flat out vec4 place, ball, haze;
+flat out vec3 flat_color;  // all lights and the air, where each ball has one colour
 {FETCH}
 void main() {{
     first = (ball_0 + gl_InstanceID) * columns;
     place = cell_of(balls, first + {PLACE});  // x: whole pixels, rest in radii; y too
     ball = cell_of(balls, first + {BALL});  // 1 / radius, -, tau, air's clearness
     haze = cell_of(balls, first + {HAZE});  // what the air adds; 1 - exp(-tau)
+    flat_color = vec3(0.0);
+    for (int k = {FIXED}; k < columns; k++) flat_color += cell_of(balls, first + k).rgb;
+    flat_color = flat_color * ball.w + haze.rgb;
     vec4 box = cell_of(balls, first + {BOX});  // left, right, top, bottom
     vec2 corner = vec2((gl_VertexID & 1) == 0 ? box.x : box.y,
                        (gl_VertexID >> 1) == 0 ? box.z : box.w);
@@ -42,6 +46,7 @@ uniform sampler2D balls;
 uniform vec2 size;
 flat in int first;
 flat in vec4 place, ball, haze;
+flat in vec3 flat_color;
 out vec4 source;
 """
 
@@ -89,6 +94,14 @@ float noise_at(vec3 way, vec4 cell, vec3 part, vec3 ahead) {
 LIGHT_FIELD = """
 uniform sampler2D field;
 uniform ivec3 field_count;
+"""
+
+FLAT = """
+void main() {
+    DISTANCE
+    float alpha = opacity(weight, ball.z, haze.a);
+    source = vec4(flat_color * alpha, alpha);
+}
 """
 
 EYEWARD = """
@@ -165,6 +178,9 @@ def eyeward_source(
     -------
     GLSL.
     """
+    footprints = footprint_source(kernel, look.footprint, look.transmittance)
+    if not detail and not field:
+        return HEAD + footprints + FLAT.replace("DISTANCE", DISTANCE)
     relief = detail and look.relief > 0.0
     ahead = "noise_at(way, cell, part, toward[s])"
     shared = f"(1.0 - 0.5 * relief * (1.0 + {ahead} - noise))"
@@ -176,9 +192,7 @@ def eyeward_source(
     }
     text = HEAD + SHARED
     text += "".join(f"#define {name} {value}\n" for name, value in macros.items())
-    text += FETCH + footprint_source(kernel, look.footprint, look.transmittance)
-    if detail or field:
-        text += TRILINEAR
+    text += FETCH + footprints + TRILINEAR
     if detail:
         text += "uniform float erosion;\nuniform float relief;\n" + NOISE
     if field:
