@@ -31,7 +31,7 @@ class _NoOpenGL(types.ModuleType):
 
 def missing(monkeypatch: pytest.MonkeyPatch, module: types.ModuleType | None) -> None:
     # Whatever context is open stays so: the function without its memory is asked.
-    monkeypatch.setattr(opengl, "context", opengl.context.__wrapped__)
+    monkeypatch.setattr(opengl, "opened", opengl.opened.__wrapped__)
     monkeypatch.setitem(sys.modules, "moderngl", module)
 
 
@@ -76,6 +76,15 @@ def test_the_command_line_ends_with_2(monkeypatch, capsys, tmp_path: Path) -> No
     assert len([line for line in printed if line.startswith("refcloud: ")]) == 1
     assert "backend: expected moderngl" in printed[-1]
     assert not list(tmp_path.glob("*.png"))
+
+
+def test_another_thread_is_refused(monkeypatch) -> None:
+    # A context belongs to one thread; drawing from another would only fail unclearly.
+    monkeypatch.setattr(opengl, "opened", lambda: (None, -1))
+    with pytest.raises(
+        ValueError, match="backend: expected the thread that first drew"
+    ):
+        render(BALL, backend="gl")
 
 
 def test_another_backend_is_refused(capsys) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
+import threading
 from typing import Any
 
 from refcloud.checking import complaint
@@ -13,7 +14,6 @@ WAYS: tuple[dict[str, str], ...] = ({"backend": "egl"}, {})
 LEAST_VERSION = 330  # OpenGL 3.3: instances, float targets, texelFetch
 
 
-@functools.cache
 def context() -> Any:
     """Open the context, or give the one that is open.
 
@@ -24,8 +24,20 @@ def context() -> Any:
     Raises
     ------
     ValueError
-        There is no moderngl, or no OpenGL: one line says which.
+        There is no moderngl, or no OpenGL, or another thread has opened it: one line
+        says which.
     """
+    ctx, owner = opened()
+    if owner != threading.get_ident():
+        expected, got = "the thread that first drew with OpenGL", "another"
+        advice = "draw there, or choose the backend numpy"
+        raise ValueError(complaint("backend", expected, got, advice))
+    return ctx
+
+
+@functools.cache
+def opened() -> tuple[Any, int]:
+    """Open the context once: it and the thread that it belongs to."""
     try:
         moderngl = importlib.import_module("moderngl")
     except ImportError:
@@ -39,7 +51,7 @@ def context() -> Any:
             reasons.append(" ".join(str(error).split()))
             continue
         ctx.gc_mode = "auto"  # what nobody holds any more is released
-        return ctx
+        return ctx, threading.get_ident()
     advice = "install Mesa's software OpenGL, or choose the backend numpy"
     raise ValueError(
         complaint("backend", "OpenGL 3.3 for the backend gl", reasons[0], advice)
