@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from refcloud.noise import uniform
-from refcloud.raster.nodes import LAST, LEAST_RISE, PER_TAIL, nodes
+from refcloud.raster.nodes import LAST, LEAST_RISE, nodes
 from refcloud.raster.tile_lists import SIDE, Discs, parts
 from refcloud.raster.tiles import composite, pixel_places
 
@@ -71,4 +71,3 @@ def test_the_last_terms_bound_the_error(seed, count, power, depth, name, law, n)
         error = np.abs(level.at_pixels(values) - exact).max(axis=(1, 2))
         # Smaller errors than this no tolerance of float32 asks about.
         assert (error <= level.error_of(values) + 5e-4)[serves].all()
-    
