@@ -20,6 +20,8 @@ from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
 
+LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
+
 
 def passes_of(
     backend: Backend,
@@ -90,8 +92,14 @@ def draw_layers(
     if behind is not None:
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     for layer in layers:
+        share = tolerance / len(layers)
         lit = light_pass(
-            layer.balls, suns, medium=layer.medium, look=layer.look, observe=observe
+            layer.balls,
+            suns,
+            medium=layer.medium,
+            look=layer.look,
+            tolerance=LIGHT * share,
+            observe=observe,
         )
         clock.stop("light")
         drawn, rows = eye_pass(
@@ -99,13 +107,13 @@ def draw_layers(
             camera,
             background=None if behind is None else rgba[..., :3],
             haze=layer.haze,
-            tolerance=tolerance / len(layers),
+            tolerance=(1.0 - LIGHT) * share,
             seed=seed,
             observe=observe,
         )
         # Before nothing, this layer covers the ones behind it (eq 28).
         rgba = drawn if behind is not None else drawn + (1.0 - drawn[..., 3:]) * rgba
-        skipped += rows
+        skipped += [*lit.skipped, *rows]
         clock.stop("eye")
     skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)

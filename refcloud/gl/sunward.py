@@ -10,20 +10,20 @@ from typing import Any, cast
 
 import numpy as np
 
-from refcloud.camera import project
 from refcloud.checking import checked
-from refcloud.conventions import Array, Observer
+from refcloud.conventions import Array, Observer, Tolerance
 from refcloud.gl.fragments import clear
 from refcloud.gl.quads import ball_rows, bind, compiled, draw, set_uniforms
 from refcloud.gl.shaders import HAZE, sunward_source
 from refcloud.gl.tables import table
 from refcloud.gl.target import Target, framebuffer, read_pixels
 from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.lightview import LightView, handed_on, light_view
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import Look, LookName, named
-from refcloud.lighting.order import depth_order
-from refcloud.lighting.sunward import FROM_ABOVE, handed_on, light_camera
+from refcloud.lighting.sunward import FROM_ABOVE
 from refcloud.metaballs import Metaballs
+from refcloud.metaballs.kernels import Kernel
 from refcloud.optics import (
     PHASE_MAN2003,
     Medium,
@@ -45,6 +45,7 @@ def sunward(
     *,
     medium: Medium,
     look: Look | LookName = "cumulus",
+    tolerance: Tolerance = 0.0,
     observe: Observer | None = None,
 ) -> LitMetaballs:
     """Carry every sun's light through the balls, on OpenGL: pass 1.
@@ -62,6 +63,8 @@ def sunward(
         Extinction and albedo; coloured ones are carried channel by channel.
     look
         The rules, or their name.
+    tolerance
+        Saves nothing here: every ball is read back and drawn.
     observe
         Called with (name, value), as of `refcloud.lighting.sunward`.
 
@@ -107,55 +110,54 @@ def _light_share(
 ) -> Array:
     """Give the share of one light that reaches each ball, (N, 3)."""
     keys = zip(medium.sigma_t_rgb.tolist(), medium.albedo_rgb.tolist(), strict=True)
-    share, done = np.empty((len(balls.radii), 3)), {}
+    share, done = np.ones((len(balls.radii), 3)), {}
+    if not len(balls.radii):
+        return share
+    view = light_view(balls, direction, side)
     for channel, (sigma_t, albedo) in enumerate(keys):
         if (sigma_t, albedo) not in done:  # a grey medium is carried once
+            watch(f"{name} order", view.order)
             tau = ball_depths(balls, sigma_t, look)
-            done[sigma_t, albedo] = _carry(
-                balls, direction, tau, albedo, look, forward, side, name, watch
-            )
+            reached, buffer = carried_on_opengl(view, tau, albedo, look, forward)
+            watch(f"{name} buffer", buffer)
+            done[sigma_t, albedo] = reached
         share[:, channel] = done[sigma_t, albedo]
     return share
 
 
-def _carry(
-    balls: Metaballs,
-    direction: Array,
-    tau: Array,
-    albedo: float,
-    look: Look,
-    forward: float,
-    side: int,
-    name: str,
-    watch: Observer,
-) -> Array:
-    """Run pass 1 for one light and one colour channel."""
-    reached = np.zeros(len(tau))
-    if not len(tau):
-        return reached
-    on_axis = handed_on(look, albedo, forward)(tau)  # refuses before anything is drawn
+def carried_on_opengl(
+    view: LightView, tau: Array, albedo: float, look: Look, forward: float
+) -> tuple[Array, Framebuffer]:
+    """Run pass 1 for one light and one colour channel, unchecked.
 
-    # 1. The camera at the light; the buffer filled with white, the unblocked light.
-    camera, centers = light_camera(balls, direction, side)
-    x, y, depth, scale = project(camera, centers)
-    radius = balls.radii * scale
+    Parameters
+    ----------
+    view, tau, albedo, look, forward
+        As `refcloud.lighting.literal_light.carried_literally`.
+
+    Returns
+    -------
+    The share of the light that reaches each ball, shape (N,), and the framebuffer.
+    """
+    on_axis = handed_on(look, albedo, forward)(tau)  # refuses before anything is drawn
+    kernel, side = view.balls.kernel, view.side
+    reached = np.zeros(len(tau))
+    # 1. The buffer is filled with white, the unblocked light.
     target = framebuffer(side, side)
     clear(target, np.ones(4))
-    order = depth_order(balls, depth)
-    watch(f"{name} order", order)
-    rows = ball_rows(4, x, y, radius, tau, (side, side))
+    rows = ball_rows(4, view.x, view.y, view.radius, tau, (side, side))
     rows[:, HAZE, 0] = on_axis
-    quads = _quads_for(balls, look, albedo, forward)
-    texture = table(rows.reshape(-1, 4))
-    bind(target, texture, 4, quads)
+    quads = _quads_for(kernel, look, albedo, forward)
+    balls = table(rows.reshape(-1, 4))
+    bind(target, balls, 4, quads)
     pixels = cast(Array, _Pixels(target))
-    for k in order:
+    for k in view.order:
         # 2. Read back: the light that reaches this ball is the mean over it.
-        place = float(x[k]), float(y[k]), float(radius[k])
+        place = float(view.x[k]), float(view.y[k]), float(view.radius[k])
         patch = patch_of(*place, side, side)
         weight = None
         if patch is not None and look.readback == "footprint":
-            weight = footprint_of(patch.q, balls.kernel, look.footprint)
+            weight = footprint_of(patch.q, kernel, look.footprint)
         mean = mean_of(pixels, *place, patch, look.readback, weight)
         reached[k] = 1.0 if mean is None else float(mean[0])
         # 3. Draw it: eq 27 at every pixel, c = 1 g + T c (eq 28).
@@ -163,8 +165,7 @@ def _carry(
             set_uniforms(quads, ball_0=int(k), light=float(reached[k]))
             draw(quads, 1)
     everything = slice(0, side), slice(0, side)
-    watch(f"{name} buffer", Framebuffer(read_pixels(target, *everything)))
-    return reached
+    return reached, Framebuffer(read_pixels(target, *everything))
 
 
 class _Pixels:
@@ -182,9 +183,9 @@ class _Pixels:
         return read if isinstance(index[0], slice) else read[0, 0]
 
 
-def _quads_for(balls: Metaballs, look: Look, albedo: float, forward: float) -> Any:
+def _quads_for(kernel: Kernel, look: Look, albedo: float, forward: float) -> Any:
     """Compile the shaders for these rules, and tell them how light is scattered on."""
-    quads = compiled(sunward_source(look, balls.kernel))
+    quads = compiled(sunward_source(look, kernel))
     kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
     limit = min(largest_steady_tau(kappa) + 1.0, FAR)
     set_uniforms(quads, forward=albedo * forward, kappa=kappa, limit=limit)

@@ -128,10 +128,13 @@ def read_mean(
     """Average pixel by pixel (E27); twin of `refcloud.raster.read_mean`."""
     width, height = len(buffer[0]), len(buffer)
     total, weights = [0.0] * 4, 0.0
-    for row, column, q in patch(x, y, radius, width, height):
+    reach = radius + 0.5 if area == "antialiased" else radius
+    for row, column, q in patch(x, y, reach, width, height):
         weight = 1.0 if area == "square" or q <= 1.0 else 0.0
         if area == "footprint":
             weight = footprint(q, kernel, name)
+        elif area == "antialiased":  # about the share of the pixel in the disc
+            weight = min(max(reach - math.sqrt(q) * reach, 0.0), 1.0)
         weights += weight
         for channel, value in enumerate(buffer[row][column]):
             total[channel] += weight * value

@@ -29,7 +29,8 @@ from refcloud.raster.footprint import (
 )
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer
 
-Area = Literal["disc", "square", "footprint"]
+Area = Literal["disc", "square", "footprint", "antialiased"]
+SOFT_EDGE = 0.5  # pixels to either side of the rim over which "antialiased" falls to 0
 # Below this depth (1 - exp(-tau w)) / (1 - exp(-tau)) is w to the last bit of float64.
 THIN = 1e-16
 
@@ -143,7 +144,9 @@ def read_mean(
         Its radius in pixels.
     area
         "disc": pixels whose centres lie in it; "square": those of its bounding square;
-        "footprint": those of the disc, weighted as the ball is drawn.
+        "footprint": those of the disc, weighted as the ball is drawn; "antialiased":
+        those around the disc, weighted by clip(radius - distance + 1/2, 0, 1), about
+        the share of the pixel that it covers.
     kernel
         The ball's density, for the area "footprint".
     footprint
@@ -189,6 +192,7 @@ def mean_of(
         The ball, as `read_mean`.
     patch, weight
         From `patch_of` and `footprint_of`; only the area "footprint" needs a weight.
+        The area "antialiased" makes its own.
     area
         As `read_mean`.
 
@@ -196,8 +200,14 @@ def mean_of(
     -------
     As `read_mean`.
     """
+    wide = radius + SOFT_EDGE
+    if area == "antialiased":
+        # Pixels just outside the ball's square count too.
+        patch = patch_of(x, y, wide, pixels.shape[1], pixels.shape[0])
     if patch is not None:
-        if area == "disc":
+        if area == "antialiased":
+            weight = np.clip(wide - np.sqrt(patch.q) * wide, 0.0, 1.0)
+        elif area == "disc":
             weight = np.less_equal(patch.q, 1.0).astype(np.float64)
         elif area == "square":
             weight = np.ones_like(patch.q)

@@ -65,6 +65,7 @@ def test_both_backends_carry_the_same_light(balls, suns, medium, look) -> None:
 SWITCHES = [
     {"readback": "disc"},
     {"readback": "square"},
+    {"readback": "antialiased"},
     {"scattering": "man2003"},
     {"scattering": "split", "transmittance": "linear"},
     {"transmittance": "beer", "tau": 8.0},

@@ -11,8 +11,8 @@ from hypothesis.extra.numpy import arrays
 import refcloud.lighting as array
 from refcloud.conventions import WHOLE_SPHERE
 from refcloud.lighting import erosion, lightfield, shading
+from refcloud.lighting.lightview import BORDER
 from refcloud.lighting.seen import RISE
-from refcloud.lighting.sunward import BORDER
 from refcloud.metaballs import Metaballs
 from refcloud.noise import uniform
 from refcloud.optics import Medium, Sun
@@ -89,7 +89,7 @@ looks = st.builds(
     scattering=st.sampled_from(["split", "man2003"]),
     transmittance=st.sampled_from(["beer", "linear"]),
     footprint=st.sampled_from(["chord", "profile"]),
-    readback=st.sampled_from(["footprint", "disc", "square"]),
+    readback=st.sampled_from(["footprint", "disc", "square", "antialiased"]),
     tau=st.none() | st.sampled_from([0.0, 0.5, 8.0, 30.0, 1e37]),
     forward=unit,
     solid_angle=st.sampled_from([0.0, 0.09, 1.0, 6.0]),

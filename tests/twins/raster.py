@@ -24,7 +24,7 @@ EQUATION = st.sampled_from(typing.get_args(Equation))
 KERNEL = st.sampled_from(["wyvill", "gaussian"])
 NAME = st.sampled_from(["chord", "profile"])
 LAW = st.sampled_from(["beer", "linear"])
-AREA = st.sampled_from(["disc", "square", "footprint"])
+AREA = st.sampled_from(["disc", "square", "footprint", "antialiased"])
 
 
 def _filled(draw: Draw, elements: st.SearchStrategy[float]) -> raster.Framebuffer:
