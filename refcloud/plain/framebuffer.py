@@ -72,9 +72,11 @@ def linear(pixel: Colour, format: str) -> Colour:
 def blended_as(source: Colour, pixel: Colour, rules: Rules, format: str) -> list[float]:
     """Blend one pixel in a format; twin of `refcloud.raster.blending.blended_as`."""
     destination, constant = linear(pixel, format), rules.constant
-    if format in ("RGBA8", "SRGB8_ALPHA8"):
-        source = [min(max(x, 0.0), 1.0) for x in source]
-        constant = [min(max(x, 0.0), 1.0) for x in constant]
+    if format != "RGBA64F":
+        fixed = format in ("RGBA8", "SRGB8_ALPHA8")
+        low, high = (0.0, 1.0) if fixed else (-FLOAT32[2], FLOAT32[2])
+        source = [min(max(x, low), high) for x in source]
+        constant = [min(max(x, low), high) for x in constant]
     src, dst, equation = rules.rgb
     result = blend(source, destination, src, dst, equation, constant)
     src, dst, equation = rules.alpha

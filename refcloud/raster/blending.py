@@ -20,7 +20,13 @@ from refcloud.raster.factors import (
     by_channel,
     by_rule,
 )
-from refcloud.raster.formats import FIXED_POINT, Arithmetic, Format, stored
+from refcloud.raster.formats import (
+    FIXED_POINT,
+    LARGEST_32,
+    Arithmetic,
+    Format,
+    stored,
+)
 from refcloud.raster.framebuffer import (
     NOTHING,
     Framebuffer,
@@ -134,9 +140,12 @@ def blended_as(
     if arithmetic == "llvmpipe" and format != "RGBA64F":
         return blended_llvmpipe(source, destination, blending, format)
     s, d, c = source, linear_of(destination, format), blending.constant
+    # A float format clamps nothing, except that a colour is a float32; the others clamp
+    # all that goes in.
     if format in FIXED_POINT:
-        # A float format clamps nothing; the others clamp all that goes in.
         s, c = np.clip(s, 0.0, 1.0), np.clip(c, 0.0, 1.0)
+    elif format != "RGBA64F":
+        s, c = (np.clip(a, -LARGEST_32, LARGEST_32) for a in (s, c))
     return stored(by_channel(by_rule, s, d, c, blending), format)
 
 

@@ -260,3 +260,16 @@ def test_nearest_fragments_win_in_any_order() -> None:
 def test_a_second_source_is_refused_by_name(name: str) -> None:
     with pytest.raises(ValueError, match=f"dst_alpha: .*one of 'ZERO', .*got '{name}'"):
         Blending(dst_alpha=name)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("format", ["RGBA32F", "RGBA16F", "RGBA8", "SRGB8_ALPHA8"])
+@pytest.mark.parametrize("arithmetic", ["ideal", "llvmpipe"])
+@few
+@given(source=COLOUR, rgb=RULES, huge=st.sampled_from([1e30, 1e300]))
+def test_no_colour_is_too_large(format, arithmetic, source, rgb, huge) -> None:
+    buffer = framebuffer(1, 1, color=source, format=format, arithmetic=arithmetic)
+    box, constant = (slice(None), slice(None)), source * -huge
+    for _ in range(2):  # the second blend meets what the first left
+        how = {"equation": rgb[2], "constant": constant}
+        blend(buffer, *box, source[None, None] * huge, *rgb[:2], **how)
+        assert np.isfinite(buffer.pixels).all()
