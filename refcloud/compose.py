@@ -14,7 +14,7 @@ from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.image import Picture
-from refcloud.lighting import Haze, Look, eyeward, sunward
+from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
@@ -24,12 +24,16 @@ LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
 
 @dataclass(frozen=True)
 class Layer:
-    """One cloud of a composed picture: its balls and what they are made of."""
+    """One cloud of a composed picture: its balls and what they are made of.
+
+    Where the balls' light is known already, `lit` brings it, and pass 1 is left out.
+    """
 
     balls: Metaballs
     medium: Medium
     look: Look
     haze: Haze | None = None
+    lit: LitMetaballs | None = None
 
 
 def draw_layers(
@@ -73,14 +77,16 @@ def draw_layers(
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     for layer in layers:
         share = tolerance / len(layers)
-        lit = sunward(
-            layer.balls,
-            suns,
-            medium=layer.medium,
-            look=layer.look,
-            tolerance=LIGHT * share,
-            observe=observe,
-        )
+        lit = layer.lit
+        if lit is None:
+            lit = sunward(
+                layer.balls,
+                suns,
+                medium=layer.medium,
+                look=layer.look,
+                tolerance=LIGHT * share,
+                observe=observe,
+            )
         clock.stop("light")
         drawn, rows = eyeward(
             lit,
@@ -97,7 +103,9 @@ def draw_layers(
         clock.stop("eye")
     skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
-    return Picture(rgba[..., :3], alpha, tuple(skipped), seconds)
+    reused = sum(layer.lit is not None for layer in layers)
+    notes = (f"light: reused for {reused} of {len(layers)} clouds",) if reused else ()
+    return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
 
 
 def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:

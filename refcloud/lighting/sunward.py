@@ -20,6 +20,7 @@ from refcloud.lighting.lightview import LightView, light_view
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.literal_light import carried_literally
 from refcloud.lighting.look import Look, LookName, named
+from refcloud.lighting.reuse import same_lights
 from refcloud.lighting.sweeps import carried, largest_gain
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun, phase
@@ -39,6 +40,7 @@ def sunward(
     medium: Medium,
     look: Look | LookName = "cumulus",
     tolerance: Tolerance = 0.0,
+    earlier: LitMetaballs | None = None,
     observe: Observer | None = None,
 ) -> LitMetaballs:
     """Carry every sun's light through the balls: pass 1.
@@ -59,6 +61,9 @@ def sunward(
     tolerance
         Largest change of a ball's colour, toward any eye, that ending the sweeps early
         may make; 0 carries the light as exactly as float64 allows.
+    earlier
+        What an earlier call of that tolerance gave: a light that shines on the same
+        balls by the same rules as there is not carried again (L15).
     observe
         Called with (name, value): order and framebuffer of each light, as "sun 0
         order", "sun 0 buffer", ..., "sky ...", "ground ..."; of a coloured medium once
@@ -90,10 +95,17 @@ def sunward(
     light = np.zeros((len(suns), count, 3))
     ambient = np.zeros((count, 3))
     sweeps: list[Sweeps] = []
+    kept = same_lights(earlier, balls, suns, medium, rules)
     for number, (name, direction, color) in enumerate(lights):
         if not color.any() or not count:
             continue
         is_sun = number < len(suns)
+        if earlier is not None and is_sun and number in kept.suns:
+            light[number] = earlier.light[kept.suns[number]]
+            continue
+        if earlier is not None and not is_sun and kept.ambient:
+            ambient = earlier.ambient
+            continue
         share, done = light_share(
             light_view(balls, direction, rules.buffer if is_sun else rules.sky_buffer),
             medium,
@@ -107,16 +119,20 @@ def sunward(
             light[number] = share * color
         else:
             ambient += share * color
-    skipped = ()
+    skipped: list[Skipped] = []
     if tolerance > 0.0 and sweeps:
         # Nilpotent: as many sweeps as balls are exact, whatever the cloud.
         left = sum(max(count - run.number, 0) for run in sweeps)
         bound = worth * max(run.bound for run in sweeps)
-        row = Skipped(
-            "light", "sweeps over all balls", left, count * len(sweeps), bound
-        )
-        skipped = (row,)
-    return LitMetaballs(balls, tuple(suns), light, ambient, medium, rules, skipped)
+        of = count * len(sweeps)
+        skipped.append(Skipped("light", "sweeps over all balls", left, of, bound))
+    if earlier is not None and kept.number:
+        what = "lights that were carried before"
+        skipped.append(Skipped("light", what, kept.number, len(suns) + 2))
+        skipped += [row for row in earlier.skipped if row.bound > 0.0]
+    return LitMetaballs(
+        balls, tuple(suns), light, ambient, medium, rules, tuple(skipped)
+    )
 
 
 def _labelled(watch: Observer, light: str) -> Observer:
