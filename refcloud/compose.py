@@ -15,7 +15,7 @@ from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
 from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.image import Picture
-from refcloud.lighting import Haze, Look, eyeward, sunward
+from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
@@ -42,12 +42,16 @@ def passes_of(
 
 @dataclass(frozen=True)
 class Layer:
-    """One cloud of a composed picture: its balls and what they are made of."""
+    """One cloud of a composed picture: its balls and what they are made of.
+
+    Where the balls' light is known already, `lit` brings it, and pass 1 is left out.
+    """
 
     balls: Metaballs
     medium: Medium
     look: Look
     haze: Haze | None = None
+    lit: LitMetaballs | None = None
 
 
 def draw_layers(
@@ -93,14 +97,16 @@ def draw_layers(
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     for layer in layers:
         share = tolerance / len(layers)
-        lit = light_pass(
-            layer.balls,
-            suns,
-            medium=layer.medium,
-            look=layer.look,
-            tolerance=LIGHT * share,
-            observe=observe,
-        )
+        lit = layer.lit
+        if lit is None:
+            lit = light_pass(
+                layer.balls,
+                suns,
+                medium=layer.medium,
+                look=layer.look,
+                tolerance=LIGHT * share,
+                observe=observe,
+            )
         clock.stop("light")
         drawn, rows = eye_pass(
             lit,
@@ -117,6 +123,9 @@ def draw_layers(
         clock.stop("eye")
     skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
+    reused = sum(layer.lit is not None for layer in layers)
+    if reused:
+        notes = (*notes, f"light: reused for {reused} of {len(layers)} clouds")
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
 
 

@@ -24,7 +24,7 @@ from refcloud.conventions import (
     Tolerance,
 )
 from refcloud.image import Picture
-from refcloud.lighting import Haze, Look, named
+from refcloud.lighting import Haze, LitMetaballs, Look, named
 from refcloud.lighting.depths import through_the_middle
 from refcloud.lighting.look import LookName
 from refcloud.metaballs import Metaballs, voxel_balls
@@ -49,7 +49,7 @@ SUN = Sun(
 
 @checked
 def render(
-    cloud: Metaballs | VoxelGrid | str,
+    cloud: Metaballs | LitMetaballs | VoxelGrid | str,
     *,
     camera: Camera | OrthographicCamera | None = None,
     width: Side | None = None,
@@ -76,7 +76,9 @@ def render(
     Parameters
     ----------
     cloud
-        Metaballs; a cloud map, drawn as one ball per occupied voxel; or a scene's name.
+        Metaballs; balls with their light, of `sunward`, which is then not carried again
+        and brings suns, medium and look; a cloud map, drawn as one ball per occupied
+        voxel; or a scene's name.
     camera
         The eye; None frames the cloud, or takes the scene's own.
     width, height
@@ -144,6 +146,15 @@ def render(
             notes=model.notes + picture.notes,
         )
     notes: list[str] = []
+    lit = None
+    if isinstance(cloud, LitMetaballs):
+        for name, part in (("suns", suns), ("medium", medium), ("look", look)):
+            if part is not None:
+                expected = "none beside lit balls, which bring their own"
+                advice = "light the balls with sunward"
+                raise ValueError(complaint(name, expected, "one", advice))
+        lit, suns, medium, look = cloud, cloud.suns, cloud.medium, cloud.look
+        cloud = lit.balls
     if isinstance(cloud, VoxelGrid):
         cloud = voxel_balls(cloud)
         notes.append(f"drawn as one ball per occupied voxel: {len(cloud.radii)} balls")
@@ -159,7 +170,7 @@ def render(
             )
         )
     picture = draw_layers(
-        [Layer(cloud, medium, rules, haze)],
+        [Layer(cloud, medium, rules, haze, lit)],
         camera,
         (SUN,) if suns is None else suns,
         Sky() if background is None else background,

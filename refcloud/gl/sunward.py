@@ -13,15 +13,15 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Observer, Tolerance
 from refcloud.gl.fragments import clear
+from refcloud.gl.opengl import context
 from refcloud.gl.quads import ball_rows, bind, compiled, draw, set_uniforms
 from refcloud.gl.shaders import HAZE, sunward_source
 from refcloud.gl.tables import table
 from refcloud.gl.target import Target, framebuffer, read_pixels
-from refcloud.lighting.depths import ball_depths
-from refcloud.lighting.lightview import LightView, handed_on, light_view
+from refcloud.lighting.lightview import LightView, handed_on
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import Look, LookName, named
-from refcloud.lighting.sunward import FROM_ABOVE
+from refcloud.lighting.sunward import lit_by
 from refcloud.metaballs import Metaballs
 from refcloud.metaballs.kernels import Kernel
 from refcloud.optics import (
@@ -46,6 +46,7 @@ def sunward(
     medium: Medium,
     look: Look | LookName = "cumulus",
     tolerance: Tolerance = 0.0,
+    earlier: LitMetaballs | None = None,
     observe: Observer | None = None,
 ) -> LitMetaballs:
     """Carry every sun's light through the balls, on OpenGL: pass 1.
@@ -65,6 +66,9 @@ def sunward(
         The rules, or their name.
     tolerance
         Saves nothing here: every ball is read back and drawn.
+    earlier
+        What an earlier call gave, of either backend: lights that shine on the same
+        balls by the same rules are not carried again (L15).
     observe
         Called with (name, value), as of `refcloud.lighting.sunward`.
 
@@ -80,49 +84,9 @@ def sunward(
     Source: paper M, eq 26 to 28, L04 to L09, L12, L13; E22 to E27.
     """
     rules = named(look)
-    watch = observe or (lambda name, value: None)
-    light = np.zeros((len(suns), len(balls.radii), 3))
-    ambient = np.zeros((len(balls.radii), 3))
-    for number, sun in enumerate(suns):
-        way = sun.direction, rules.forward, rules.buffer
-        if sun.irradiance.any():
-            share = _light_share(balls, *way, medium, rules, f"sun {number}", watch)
-            light[number] = share * sun.irradiance
-    for name, direction, color in (
-        ("sky", FROM_ABOVE, rules.sky_light),
-        ("ground", -FROM_ABOVE, rules.ground_light),
-    ):
-        way = direction, rules.sky_forward, rules.sky_buffer
-        if color.any():
-            ambient += _light_share(balls, *way, medium, rules, name, watch) * color
-    return LitMetaballs(balls, tuple(suns), light, ambient, medium, rules)
-
-
-def _light_share(
-    balls: Metaballs,
-    direction: Array,
-    forward: float,
-    side: int,
-    medium: Medium,
-    look: Look,
-    name: str,
-    watch: Observer,
-) -> Array:
-    """Give the share of one light that reaches each ball, (N, 3)."""
-    keys = zip(medium.sigma_t_rgb.tolist(), medium.albedo_rgb.tolist(), strict=True)
-    share, done = np.ones((len(balls.radii), 3)), {}
-    if not len(balls.radii):
-        return share
-    view = light_view(balls, direction, side)
-    for channel, (sigma_t, albedo) in enumerate(keys):
-        if (sigma_t, albedo) not in done:  # a grey medium is carried once
-            watch(f"{name} order", view.order)
-            tau = ball_depths(balls, sigma_t, look)
-            reached, buffer = carried_on_opengl(view, tau, albedo, look, forward)
-            watch(f"{name} buffer", buffer)
-            done[sigma_t, albedo] = reached
-        share[:, channel] = done[sigma_t, albedo]
-    return share
+    context()  # refuses here, also where no ball is to be lit
+    how = rules, tolerance, earlier, observe
+    return lit_by(balls, suns, medium, *how, carried_on_opengl)
 
 
 def carried_on_opengl(

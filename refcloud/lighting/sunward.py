@@ -7,6 +7,7 @@ framebuffer is read back over its projection: the mean is the light that reaches
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,10 +21,11 @@ from refcloud.lighting.lightview import LightView, light_view
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.literal_light import carried_literally
 from refcloud.lighting.look import Look, LookName, named
+from refcloud.lighting.reuse import same_lights
 from refcloud.lighting.sweeps import carried, largest_gain
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun, phase
-from refcloud.raster import framebuffer
+from refcloud.raster import Framebuffer, framebuffer
 
 # Errors of a share that float32 may use up: lists of hundreds of balls round below it.
 LEAST_FLOAT32 = 3e-4
@@ -39,6 +41,7 @@ def sunward(
     medium: Medium,
     look: Look | LookName = "cumulus",
     tolerance: Tolerance = 0.0,
+    earlier: LitMetaballs | None = None,
     observe: Observer | None = None,
 ) -> LitMetaballs:
     """Carry every sun's light through the balls: pass 1.
@@ -59,6 +62,9 @@ def sunward(
     tolerance
         Largest change of a ball's colour, toward any eye, that ending the sweeps early
         may make; 0 carries the light as exactly as float64 allows.
+    earlier
+        What an earlier call of that tolerance gave: a light that shines on the same
+        balls by the same rules as there is not carried again (L15).
     observe
         Called with (name, value): order and framebuffer of each light, as "sun 0
         order", "sun 0 buffer", ..., "sky ...", "ground ..."; of a coloured medium once
@@ -75,7 +81,36 @@ def sunward(
 
     Source: paper M, eq 26 to 28, L04 to L09, L12, L13; E22 to E27.
     """
-    rules = named(look)
+    return lit_by(balls, suns, medium, named(look), tolerance, earlier, observe)
+
+
+# Carries one light over one channel, as `carried_literally` does.
+Carry = Callable[[LightView, Array, float, Look, float], tuple[Array, Framebuffer]]
+
+
+def lit_by(
+    balls: Metaballs,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    rules: Look,
+    tolerance: float,
+    earlier: LitMetaballs | None,
+    observe: Observer | None,
+    carry: Carry | None = None,
+) -> LitMetaballs:
+    """Carry every light through the balls without a check: the inner form of `sunward`.
+
+    Parameters
+    ----------
+    balls, suns, medium, rules, tolerance, earlier, observe
+        As `sunward`.
+    carry
+        How one light is carried; None for sweeps.
+
+    Returns
+    -------
+    As `sunward`.
+    """
     watch = observe or (lambda name, value: None)
     count = len(balls.radii)
     lights = [
@@ -90,10 +125,17 @@ def sunward(
     light = np.zeros((len(suns), count, 3))
     ambient = np.zeros((count, 3))
     sweeps: list[Sweeps] = []
+    kept = same_lights(earlier, balls, suns, medium, rules)
     for number, (name, direction, color) in enumerate(lights):
         if not color.any() or not count:
             continue
         is_sun = number < len(suns)
+        if earlier is not None and is_sun and number in kept.suns:
+            light[number] = earlier.light[kept.suns[number]]
+            continue
+        if earlier is not None and not is_sun and kept.ambient:
+            ambient = earlier.ambient
+            continue
         share, done = light_share(
             light_view(balls, direction, rules.buffer if is_sun else rules.sky_buffer),
             medium,
@@ -101,22 +143,27 @@ def sunward(
             rules.forward if is_sun else rules.sky_forward,
             tolerance / worth if worth > 0.0 else 0.0,
             _labelled(watch, name),
+            carry,
         )
         sweeps += done
         if is_sun:
             light[number] = share * color
         else:
             ambient += share * color
-    skipped = ()
+    skipped: list[Skipped] = []
     if tolerance > 0.0 and sweeps:
         # Nilpotent: as many sweeps as balls are exact, whatever the cloud.
         left = sum(max(count - run.number, 0) for run in sweeps)
         bound = worth * max(run.bound for run in sweeps)
-        row = Skipped(
-            "light", "sweeps over all balls", left, count * len(sweeps), bound
-        )
-        skipped = (row,)
-    return LitMetaballs(balls, tuple(suns), light, ambient, medium, rules, skipped)
+        of = count * len(sweeps)
+        skipped.append(Skipped("light", "sweeps over all balls", left, of, bound))
+    if earlier is not None and kept.number:
+        what = "lights that were carried before"
+        skipped.append(Skipped("light", what, kept.number, len(suns) + 2))
+        skipped += [row for row in earlier.skipped if row.bound > 0.0]
+    return LitMetaballs(
+        balls, tuple(suns), light, ambient, medium, rules, tuple(skipped)
+    )
 
 
 def _labelled(watch: Observer, light: str) -> Observer:
@@ -138,6 +185,7 @@ def light_share(
     forward: float,
     most: float,
     watch: Observer,
+    carry: Carry | None = None,
 ) -> tuple[Array, list[Sweeps]]:
     """Give the share of one light that reaches each ball, unchecked.
 
@@ -153,6 +201,8 @@ def light_share(
         Largest error of a share.
     watch
         Called with (name, value).
+    carry
+        How the light is carried; None for sweeps.
 
     Returns
     -------
@@ -168,13 +218,16 @@ def light_share(
         largest_gain(depths[key], key[1], look, forward) <= MOST_GAIN
         for key in channels
     )
-    found = fragments(view, look, np.float32 if rounds else np.float64)
+    found = None
+    if carry is None:
+        found = fragments(view, look, np.float32 if rounds else np.float64)
     share = np.empty((len(view.radius), 3))
     sweeps: list[Sweeps] = []
     for key, tau in depths.items():
         watch("order", view.order)
         if found is None:
-            reached, buffer = carried_literally(view, tau, key[1], look, forward)
+            literally = carry or carried_literally
+            reached, buffer = literally(view, tau, key[1], look, forward)
         else:
             result = carried(found, tau, key[1], look, forward, most)
             sweeps.append(Sweeps(len(result.changes), result.bound))
