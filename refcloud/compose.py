@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
-from refcloud.conventions import Array, Observer, Skipped
+from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
 from refcloud.metaballs import Metaballs
@@ -20,6 +21,23 @@ from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
 
 LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
+
+
+def passes_of(
+    backend: Backend,
+) -> tuple[Callable[..., Any], Callable[..., Any], tuple[str, ...]]:
+    """Give the two passes of a backend, and what the picture is to say about it.
+
+    Raises
+    ------
+    ValueError
+        There is no moderngl or no OpenGL.
+    """
+    if backend == "numpy":
+        return sunward, eyeward, ()
+    # By name, since nothing in refcloud depends on the optional room.
+    gl = importlib.import_module("refcloud.gl")
+    return gl.sunward, gl.eyeward, (f"backend: OpenGL, {gl.renderer()}, float32",)
 
 
 @dataclass(frozen=True)
@@ -45,6 +63,7 @@ def draw_layers(
     tolerance: float = 0.0,
     seed: int = 0,
     observe: Observer | None = None,
+    backend: Backend = "numpy",
 ) -> Picture:
     """Draw clouds one over the other, the farthest first; each is lit by itself.
 
@@ -60,13 +79,14 @@ def draw_layers(
         As `render`.
     tolerance
         Largest error of a channel; every layer gets an equal share.
-    seed, observe
+    seed, observe, backend
         As `render`.
 
     Returns
     -------
     The picture.
     """
+    light_pass, eye_pass, notes = passes_of(backend)
     seconds: dict[str, float] = {}
     clock = _Clock(seconds)
     behind = _painted(background, camera, suns)
@@ -77,18 +97,18 @@ def draw_layers(
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     for layer in layers:
         share = tolerance / len(layers)
-        lit = layer.lit
-        if lit is None:
-            lit = sunward(
-                layer.balls,
-                suns,
-                medium=layer.medium,
-                look=layer.look,
-                tolerance=LIGHT * share,
-                observe=observe,
-            )
+        # OpenGL's first pass knows of no savings: it is its float32 in any case.
+        saving = {"tolerance": LIGHT * share} if backend == "numpy" else {}
+        lit = layer.lit or light_pass(
+            layer.balls,
+            suns,
+            medium=layer.medium,
+            look=layer.look,
+            observe=observe,
+            **saving,
+        )
         clock.stop("light")
-        drawn, rows = eyeward(
+        drawn, rows = eye_pass(
             lit,
             camera,
             background=None if behind is None else rgba[..., :3],
@@ -104,7 +124,8 @@ def draw_layers(
     skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
     reused = sum(layer.lit is not None for layer in layers)
-    notes = (f"light: reused for {reused} of {len(layers)} clouds",) if reused else ()
+    if reused:
+        notes += (f"light: reused for {reused} of {len(layers)} clouds",)
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
 
 

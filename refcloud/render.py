@@ -10,11 +10,12 @@ import numpy as np
 from refcloud.camera import Camera, OrthographicCamera, frame, refuse_large
 from refcloud.checking import checked, complaint
 from refcloud.cloudmap import VoxelGrid
-from refcloud.compose import Layer, draw_layers
+from refcloud.compose import Layer, draw_layers, passes_of
 from refcloud.conventions import (
     MOST_PIXELS,
     WHOLE_SPHERE,
     Array,
+    Backend,
     Colour,
     Observer,
     Range,
@@ -66,6 +67,7 @@ def render(
     quality: Quality = "final",
     seed: Seed = 0,
     observe: Observer | None = None,
+    backend: Backend = "numpy",
 ) -> Picture:
     """Render metaballs, a cloud map or a named scene.
 
@@ -102,6 +104,9 @@ def render(
         Chooses the noise that erodes footprints.
     observe
         Called with (name, value) for each intermediate.
+    backend
+        What runs the two passes: "numpy", or "gl" for OpenGL in float32, through
+        moderngl.
 
     Returns
     -------
@@ -110,13 +115,15 @@ def render(
     Raises
     ------
     ValueError
-        No scene has that name; the picture is over 64 megapixels.
+        No scene has that name; the picture is over 64 megapixels; the backend is
+        missing.
 
     Source: paper M, section 4 (W03).
     """
     if isinstance(suns, Sun):
         suns = (suns,)
     width, height = size_of(width, height, quality)
+    passes_of(backend)  # refuses here, before the clouds are made
     if isinstance(cloud, str):
         scene = find_scene(cloud)
         refuse_large(width, height)  # before the clouds are made
@@ -128,7 +135,8 @@ def render(
                     "one",
                 )
             )
-        view = View(width, height, camera, suns, medium, look, tolerance, seed, observe)
+        how = tolerance, seed, observe, backend
+        view = View(width, height, camera, suns, medium, look, *how)
         model = scene.model()
         picture = scene.draw(model, view)
         return dataclasses.replace(
@@ -169,6 +177,7 @@ def render(
         tolerance=tolerance,
         seed=seed,
         observe=observe,
+        backend=backend,
     )
     return dataclasses.replace(picture, notes=(*notes, *picture.notes))
 

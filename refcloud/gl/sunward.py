@@ -1,0 +1,192 @@
+"""Pass 1 on OpenGL, to the letter: read back, draw, ball after ball.
+
+Every ball waits for the mean of what the balls before it left in the framebuffer, so
+that each costs a readback; it is summed in float64. Only what is drawn is float32.
+"""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import numpy as np
+
+from refcloud.camera import project
+from refcloud.checking import checked
+from refcloud.conventions import Array, Observer
+from refcloud.gl.fragments import clear
+from refcloud.gl.quads import ball_rows, bind, compiled, draw, set_uniforms
+from refcloud.gl.shaders import HAZE, sunward_source
+from refcloud.gl.tables import table
+from refcloud.gl.target import Target, framebuffer, read_pixels
+from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.lightview import handed_on, light_camera
+from refcloud.lighting.lit import LitMetaballs
+from refcloud.lighting.look import Look, LookName, named
+from refcloud.lighting.order import depth_order
+from refcloud.lighting.sunward import FROM_ABOVE
+from refcloud.metaballs import Metaballs
+from refcloud.optics import (
+    PHASE_MAN2003,
+    Medium,
+    Sun,
+    coupling_man2003,
+    largest_steady_tau,
+)
+from refcloud.raster import Framebuffer
+from refcloud.raster.footprint import footprint_of, patch_of
+from refcloud.raster.splat import mean_of
+
+FAR = 1e30  # stands for a limit of the steady range that float32 does not hold
+
+
+@checked
+def sunward(
+    balls: Metaballs,
+    suns: tuple[Sun, ...],
+    *,
+    medium: Medium,
+    look: Look | LookName = "cumulus",
+    observe: Observer | None = None,
+) -> LitMetaballs:
+    """Carry every sun's light through the balls, on OpenGL: pass 1.
+
+    Formula: I_k = g_{k-1} + T_{k-1} I_{k-1}, I_1 = I_0, T = exp(-tau), where I_k is the
+    mean of the framebuffer over ball k
+
+    Parameters
+    ----------
+    balls
+        The cloud.
+    suns
+        Each is carried by itself; the results add up.
+    medium
+        Extinction and albedo; coloured ones are carried channel by channel.
+    look
+        The rules, or their name.
+    observe
+        Called with (name, value), as of `refcloud.lighting.sunward`.
+
+    Returns
+    -------
+    The lit balls, for either `eyeward`.
+
+    Raises
+    ------
+    ValueError
+        There is no OpenGL; or with gain="refuse", where eq 26 would make light.
+
+    Source: paper M, eq 26 to 28, L04 to L09, L12, L13; E22 to E27.
+    """
+    rules = named(look)
+    watch = observe or (lambda name, value: None)
+    light = np.zeros((len(suns), len(balls.radii), 3))
+    ambient = np.zeros((len(balls.radii), 3))
+    for number, sun in enumerate(suns):
+        way = sun.direction, rules.forward, rules.buffer
+        if sun.irradiance.any():
+            share = _light_share(balls, *way, medium, rules, f"sun {number}", watch)
+            light[number] = share * sun.irradiance
+    for name, direction, color in (
+        ("sky", FROM_ABOVE, rules.sky_light),
+        ("ground", -FROM_ABOVE, rules.ground_light),
+    ):
+        way = direction, rules.sky_forward, rules.sky_buffer
+        if color.any():
+            ambient += _light_share(balls, *way, medium, rules, name, watch) * color
+    return LitMetaballs(balls, tuple(suns), light, ambient, medium, rules)
+
+
+def _light_share(
+    balls: Metaballs,
+    direction: Array,
+    forward: float,
+    side: int,
+    medium: Medium,
+    look: Look,
+    name: str,
+    watch: Observer,
+) -> Array:
+    """Give the share of one light that reaches each ball, (N, 3)."""
+    keys = zip(medium.sigma_t_rgb.tolist(), medium.albedo_rgb.tolist(), strict=True)
+    share, done = np.empty((len(balls.radii), 3)), {}
+    for channel, (sigma_t, albedo) in enumerate(keys):
+        if (sigma_t, albedo) not in done:  # a grey medium is carried once
+            tau = ball_depths(balls, sigma_t, look)
+            done[sigma_t, albedo] = _carry(
+                balls, direction, tau, albedo, look, forward, side, name, watch
+            )
+        share[:, channel] = done[sigma_t, albedo]
+    return share
+
+
+def _carry(
+    balls: Metaballs,
+    direction: Array,
+    tau: Array,
+    albedo: float,
+    look: Look,
+    forward: float,
+    side: int,
+    name: str,
+    watch: Observer,
+) -> Array:
+    """Run pass 1 for one light and one colour channel."""
+    reached = np.zeros(len(tau))
+    if not len(tau):
+        return reached
+    on_axis = handed_on(look, albedo, forward)(tau)  # refuses before anything is drawn
+
+    # 1. The camera at the light; the buffer filled with white, the unblocked light.
+    camera, centers = light_camera(balls, direction, side)
+    x, y, depth, scale = project(camera, centers)
+    radius = balls.radii * scale
+    target = framebuffer(side, side)
+    clear(target, np.ones(4))
+    order = depth_order(balls, depth)
+    watch(f"{name} order", order)
+    rows = ball_rows(4, x, y, radius, tau, (side, side))
+    rows[:, HAZE, 0] = on_axis
+    quads = _quads_for(balls, look, albedo, forward)
+    texture = table(rows.reshape(-1, 4))
+    bind(target, texture, 4, quads)
+    pixels = cast(Array, _Pixels(target))
+    for k in order:
+        # 2. Read back: the light that reaches this ball is the mean over it.
+        place = float(x[k]), float(y[k]), float(radius[k])
+        patch = patch_of(*place, side, side)
+        weight = None
+        if patch is not None and look.readback == "footprint":
+            weight = footprint_of(patch.q, balls.kernel, look.footprint)
+        mean = mean_of(pixels, *place, patch, look.readback, weight)
+        reached[k] = 1.0 if mean is None else float(mean[0])
+        # 3. Draw it: eq 27 at every pixel, c = 1 g + T c (eq 28).
+        if patch is not None:
+            set_uniforms(quads, ball_0=int(k), light=float(reached[k]))
+            draw(quads, 1)
+    everything = slice(0, side), slice(0, side)
+    watch(f"{name} buffer", Framebuffer(read_pixels(target, *everything)))
+    return reached
+
+
+class _Pixels:
+    """The framebuffer's pixels as an array: each index reads that box back."""
+
+    def __init__(self, target: Target) -> None:
+        self.target = target
+        self.shape = target.height, target.width, 4
+
+    def __getitem__(self, index: tuple[Any, Any]) -> Array:
+        rows, columns = (
+            part if isinstance(part, slice) else slice(part, part + 1) for part in index
+        )
+        read = read_pixels(self.target, rows, columns)
+        return read if isinstance(index[0], slice) else read[0, 0]
+
+
+def _quads_for(balls: Metaballs, look: Look, albedo: float, forward: float) -> Any:
+    """Compile the shaders for these rules, and tell them how light is scattered on."""
+    quads = compiled(sunward_source(look, balls.kernel))
+    kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
+    limit = min(largest_steady_tau(kappa) + 1.0, FAR)
+    set_uniforms(quads, forward=albedo * forward, kappa=kappa, limit=limit)
+    return quads
