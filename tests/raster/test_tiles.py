@@ -10,10 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from refcloud.noise import uniform
-from refcloud.raster import framebuffer, tile_lists, tiles
+from refcloud.raster import framebuffer, splat, tile_lists, tiles
 from refcloud.raster.canvas import Canvas
 from refcloud.raster.quadratics import cancelling
-from refcloud.raster.splat import splat_of
 from refcloud.raster.tile_lists import PIXELS, SIDE, Discs, parts, ranges_of
 from refcloud.raster.tiles import composite, pixel_places
 
@@ -74,7 +73,7 @@ def literally(size, discs, tau, colours, name, law, background=None):
     for k in range(len(tau))[::-1]:
         place = discs.x[k], discs.y[k], discs.radius[k]
         glow = colours[k] * -np.expm1(-tau[k])
-        splat_of(buffer.pixels, *place, glow, tau[k], "wyvill", name, law)
+        splat(buffer, *place, emission=glow, tau=tau[k], name=name, law=law)
     return buffer.pixels
 
 
