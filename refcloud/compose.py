@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,22 +13,45 @@ import numpy as np
 
 from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
-from refcloud.conventions import Array, Observer, Skipped
+from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.image import Picture
-from refcloud.lighting import Haze, Look, eyeward, sunward
+from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
 
+LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
+
+
+def passes_of(
+    backend: Backend,
+) -> tuple[Callable[..., Any], Callable[..., Any], tuple[str, ...]]:
+    """Give the two passes of a backend, and what the picture is to say about it.
+
+    Raises
+    ------
+    ValueError
+        There is no moderngl or no OpenGL.
+    """
+    if backend == "numpy":
+        return sunward, eyeward, ()
+    # By name, since nothing in refcloud depends on the optional room.
+    gl = importlib.import_module("refcloud.gl")
+    return gl.sunward, gl.eyeward, (f"backend: OpenGL, {gl.renderer()}, float32",)
+
 
 @dataclass(frozen=True)
 class Layer:
-    """One cloud of a composed picture: its balls and what they are made of."""
+    """One cloud of a composed picture: its balls and what they are made of.
+
+    Where the balls' light is known already, `lit` brings it, and pass 1 is left out.
+    """
 
     balls: Metaballs
     medium: Medium
     look: Look
     haze: Haze | None = None
+    lit: LitMetaballs | None = None
 
 
 def draw_layers(
@@ -39,6 +63,7 @@ def draw_layers(
     tolerance: float = 0.0,
     seed: int = 0,
     observe: Observer | None = None,
+    backend: Backend = "numpy",
 ) -> Picture:
     """Draw clouds one over the other, the farthest first; each is lit by itself.
 
@@ -54,13 +79,14 @@ def draw_layers(
         As `render`.
     tolerance
         Largest error of a channel; every layer gets an equal share.
-    seed, observe
+    seed, observe, backend
         As `render`.
 
     Returns
     -------
     The picture.
     """
+    light_pass, eye_pass, notes = passes_of(backend)
     seconds: dict[str, float] = {}
     clock = _Clock(seconds)
     behind = _painted(background, camera, suns)
@@ -70,26 +96,37 @@ def draw_layers(
     if behind is not None:
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     for layer in layers:
-        lit = sunward(
-            layer.balls, suns, medium=layer.medium, look=layer.look, observe=observe
-        )
+        share = tolerance / len(layers)
+        lit = layer.lit
+        if lit is None:
+            lit = light_pass(
+                layer.balls,
+                suns,
+                medium=layer.medium,
+                look=layer.look,
+                tolerance=LIGHT * share,
+                observe=observe,
+            )
         clock.stop("light")
-        drawn, rows = eyeward(
+        drawn, rows = eye_pass(
             lit,
             camera,
             background=None if behind is None else rgba[..., :3],
             haze=layer.haze,
-            tolerance=tolerance / len(layers),
+            tolerance=(1.0 - LIGHT) * share,
             seed=seed,
             observe=observe,
         )
         # Before nothing, this layer covers the ones behind it (eq 28).
         rgba = drawn if behind is not None else drawn + (1.0 - drawn[..., 3:]) * rgba
-        skipped += rows
+        skipped += [*lit.skipped, *rows]
         clock.stop("eye")
     skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
-    return Picture(rgba[..., :3], alpha, tuple(skipped), seconds)
+    reused = sum(layer.lit is not None for layer in layers)
+    if reused:
+        notes = (*notes, f"light: reused for {reused} of {len(layers)} clouds")
+    return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
 
 
 def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:

@@ -40,7 +40,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,6 +116,7 @@ Positive = Range(0.0, open_lower=True)
 Seed = Annotated[int, Range(-(2**63), 2**63 - 1)]
 Vector = Annotated[Array, Shape(3)]
 Colour = Annotated[Array, Shape(3), Range(0.0, unit="radiance")]
+Backend = Literal["numpy", "gl"]  # what runs the two passes of light
 Tolerance = Annotated[float, Range(0.0, 1.0, "displayed white")]
 
 

@@ -115,5 +115,6 @@ ERRATA = {
     "E32": ("the nearest point may lie two cells away", "exact; neighbours by name"),
     "E33": ("remap divides by zero; max distance bounds nothing", "refused; diagonals"),
     "E34": ("document D's sky is nearly black", "as printed, and gradients that work"),
+    "E35": ("8-bit accumulation stalls; nobody says so", "float; RGBA8 by name"),
     "E36": ("Henyey-Greenstein cancels near |g| = 1", "a form that does not"),
 }

@@ -10,11 +10,12 @@ import numpy as np
 from refcloud.camera import Camera, OrthographicCamera, frame, refuse_large
 from refcloud.checking import checked, complaint
 from refcloud.cloudmap import VoxelGrid
-from refcloud.compose import Layer, draw_layers
+from refcloud.compose import Layer, draw_layers, passes_of
 from refcloud.conventions import (
     MOST_PIXELS,
     WHOLE_SPHERE,
     Array,
+    Backend,
     Colour,
     Observer,
     Range,
@@ -23,7 +24,7 @@ from refcloud.conventions import (
     Tolerance,
 )
 from refcloud.image import Picture
-from refcloud.lighting import Haze, Look, named
+from refcloud.lighting import Haze, LitMetaballs, Look, named
 from refcloud.lighting.depths import through_the_middle
 from refcloud.lighting.look import LookName
 from refcloud.metaballs import Metaballs, voxel_balls
@@ -48,7 +49,7 @@ SUN = Sun(
 
 @checked
 def render(
-    cloud: Metaballs | VoxelGrid | str,
+    cloud: Metaballs | LitMetaballs | VoxelGrid | str,
     *,
     camera: Camera | OrthographicCamera | None = None,
     width: Side | None = None,
@@ -66,6 +67,7 @@ def render(
     quality: Quality = "final",
     seed: Seed = 0,
     observe: Observer | None = None,
+    backend: Backend = "numpy",
 ) -> Picture:
     """Render metaballs, a cloud map or a named scene.
 
@@ -74,7 +76,9 @@ def render(
     Parameters
     ----------
     cloud
-        Metaballs; a cloud map, drawn as one ball per occupied voxel; or a scene's name.
+        Metaballs; balls with their light, of `sunward`, which is then not carried again
+        and brings suns, medium and look; a cloud map, drawn as one ball per occupied
+        voxel; or a scene's name.
     camera
         The eye; None frames the cloud, or takes the scene's own.
     width, height
@@ -100,6 +104,9 @@ def render(
         Chooses the noise that erodes footprints.
     observe
         Called with (name, value) for each intermediate.
+    backend
+        What runs the two passes: "numpy", or "gl" for OpenGL in float32, through
+        moderngl.
 
     Returns
     -------
@@ -108,13 +115,15 @@ def render(
     Raises
     ------
     ValueError
-        No scene has that name; the picture is over 64 megapixels.
+        No scene has that name; the picture is over 64 megapixels; the backend is
+        missing.
 
     Source: paper M, section 4 (W03).
     """
     if isinstance(suns, Sun):
         suns = (suns,)
     width, height = size_of(width, height, quality)
+    passes_of(backend)  # refuses here, before the clouds are made
     if isinstance(cloud, str):
         scene = find_scene(cloud)
         refuse_large(width, height)  # before the clouds are made
@@ -126,7 +135,8 @@ def render(
                     "one",
                 )
             )
-        view = View(width, height, camera, suns, medium, look, tolerance, seed, observe)
+        how = tolerance, seed, observe, backend
+        view = View(width, height, camera, suns, medium, look, *how)
         model = scene.model()
         picture = scene.draw(model, view)
         return dataclasses.replace(
@@ -136,6 +146,15 @@ def render(
             notes=model.notes + picture.notes,
         )
     notes: list[str] = []
+    lit = None
+    if isinstance(cloud, LitMetaballs):
+        for name, part in (("suns", suns), ("medium", medium), ("look", look)):
+            if part is not None:
+                expected = "none beside lit balls, which bring their own"
+                advice = "light the balls with sunward"
+                raise ValueError(complaint(name, expected, "one", advice))
+        lit, suns, medium, look = cloud, cloud.suns, cloud.medium, cloud.look
+        cloud = lit.balls
     if isinstance(cloud, VoxelGrid):
         cloud = voxel_balls(cloud)
         notes.append(f"drawn as one ball per occupied voxel: {len(cloud.radii)} balls")
@@ -151,13 +170,14 @@ def render(
             )
         )
     picture = draw_layers(
-        [Layer(cloud, medium, rules, haze)],
+        [Layer(cloud, medium, rules, haze, lit)],
         camera,
         (SUN,) if suns is None else suns,
         Sky() if background is None else background,
         tolerance=tolerance,
         seed=seed,
         observe=observe,
+        backend=backend,
     )
     return dataclasses.replace(picture, notes=(*notes, *picture.notes))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
-from refcloud.conventions import Observer, Skipped
+from refcloud.conventions import Backend, Observer, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Look
 from refcloud.lighting.look import LookName
@@ -28,6 +28,7 @@ class View:
     tolerance: float = 0.0
     seed: int = 0
     observe: Observer | None = None
+    backend: Backend = "numpy"
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from refcloud.lighting.erosion import detail_grid, eroded, lit_share
 from refcloud.lighting.eyeward import eyeward
 from refcloud.lighting.lightfield import LightField, field_value, light_field
 from refcloud.lighting.lit import LitMetaballs
+from refcloud.lighting.literal import eyeward_literal
 from refcloud.lighting.look import MAN, Look, named
 from refcloud.lighting.order import depth_order
 from refcloud.lighting.sunward import sunward
@@ -20,6 +21,7 @@ __all__ = [
     "detail_grid",
     "eroded",
     "eyeward",
+    "eyeward_literal",
     "field_value",
     "light_field",
     "lit_share",

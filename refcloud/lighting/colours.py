@@ -11,9 +11,11 @@ from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import check_fields, checked
 from refcloud.conventions import WHOLE_SPHERE, Array, Colour, Positive
 from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.lightview import handed_on
 from refcloud.lighting.lit import LitMetaballs
-from refcloud.lighting.sunward import handed_on
-from refcloud.optics import PHASE_MAN2003, coupling_man2003, phase
+from refcloud.lighting.look import Look
+from refcloud.metaballs import Metaballs
+from refcloud.optics import PHASE_MAN2003, Medium, coupling_man2003, phase
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     balls, medium = lit.balls, lit.medium
     colours = np.empty((len(balls.radii), len(lit.suns) + 1, 3))
     toward_eye = _toward_eye(balls.centers, camera)
-    gain = _gain(lit)
+    gain = gain_of(balls, medium, lit.look)
     for s, sun in enumerate(lit.suns):
         # The sun's light travels along -direction and leaves toward the eye.
         x, y, z = (toward_eye * sun.direction).T
@@ -70,15 +72,24 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     return colours
 
 
-def _gain(lit: LitMetaballs) -> Array:
-    """Give what the scattering rule puts on top of albedo times phase, (N, 3) or 1."""
-    look = lit.look
+def gain_of(balls: Metaballs, medium: Medium, look: Look) -> Array:
+    """Give what the scattering rule puts on top of albedo times phase, unchecked.
+
+    Parameters
+    ----------
+    balls, medium, look
+        As `LitMetaballs` holds them.
+
+    Returns
+    -------
+    Shape (N, 3), at least 0.
+    """
+    gain = np.ones((len(balls.radii), 3))
     if look.scattering == "split":
-        return np.ones(3)
-    gain = np.empty((len(lit.balls.radii), 3))
+        return gain
     for channel in range(3):
-        albedo = float(lit.medium.albedo_rgb[channel])
-        tau = ball_depths(lit.balls, float(lit.medium.sigma_t_rgb[channel]), look)
+        albedo = float(medium.albedo_rgb[channel])
+        tau = ball_depths(balls, float(medium.sigma_t_rgb[channel]), look)
         kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
         # Depth as eq 26 counts it, held where pass 1 holds it, over the opacity.
         held = handed_on(look, albedo, 0.0)(tau)

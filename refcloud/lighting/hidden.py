@@ -67,7 +67,7 @@ def without_faint(
     Balls still to be drawn, and the rows of the report.
     """
     effect = -np.expm1(-tau) * brightest
-    candidates = order[visible[order]]
+    candidates = order[(visible & (effect <= tolerance))[order]]
     ranked = candidates[np.argsort(effect[candidates], kind="stable")]
     total = np.cumsum(effect[ranked])
     faint = ranked[total <= tolerance]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from refcloud.checking import check_fields
-from refcloud.conventions import Array, Range, Shape
+from refcloud.conventions import Array, Range, Shape, Skipped
 from refcloud.lighting.look import Look
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
@@ -31,6 +31,8 @@ class LitMetaballs:
         What the cloud is made of.
     look
         The rules that carried the light.
+    skipped
+        What a tolerance left out in carrying it.
     """
 
     balls: Metaballs
@@ -39,6 +41,7 @@ class LitMetaballs:
     ambient: Annotated[Array, Shape("N", 3), Range(0.0, unit="radiance")]
     medium: Medium
     look: Look
+    skipped: tuple[Skipped, ...] = ()
 
     def __post_init__(self) -> None:
         check_fields(self)

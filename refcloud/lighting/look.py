@@ -38,7 +38,8 @@ class Look:
         "chord", the integral along the line of sight, or "profile", the paper's map of
         eq 12 (E04).
     readback
-        Mean over the ball's "disc", "square", or weighted by its "footprint" (E27).
+        Mean over the ball's "disc", over the disc with "antialiased" edges, over its
+        "square", or weighted by its "footprint" (E27).
     tau
         Optical depth of every ball on its axis; None takes it from the medium.
     forward
@@ -73,7 +74,7 @@ class Look:
     scattering: Literal["split", "man2003"] = "split"
     transmittance: Literal["beer", "linear"] = "beer"
     footprint: Literal["chord", "profile"] = "chord"
-    readback: Literal["footprint", "disc", "square"] = "footprint"
+    readback: Literal["footprint", "disc", "square", "antialiased"] = "footprint"
     tau: Annotated[float, Range(0.0, 1e37)] | None = None
     forward: Share = 0.7
     solid_angle: Annotated[float, Range(0.0, WHOLE_SPHERE, "sr")] = 1.0

@@ -106,48 +106,6 @@ def draw_over(pixels: Array, shading: Shading, ball: Ball) -> None:
         blend_patch(behind[some], source)
 
 
-def draw_under(pixels: Array, shading: Shading, ball: Ball, least: float) -> bool:
-    """Blend one ball under what lies in front of it, for balls drawn near to far.
-
-    Blending with ONE_MINUS_DST_ALPHA and ONE under the nearer balls makes the same sums
-    as eq 28 from behind, and the framebuffer's alpha tells where nothing can show.
-
-    Parameters
-    ----------
-    pixels
-        The framebuffer, RGBA, shape (H, W, 4), cleared to 0, written in place.
-    shading
-        What all balls share.
-    ball
-        The ball.
-    least
-        Pixels that let no more than this share through are left as they are.
-
-    Returns
-    -------
-    False where the ball lies behind such pixels alone.
-    """
-    height, width = pixels.shape[:2]
-    patch = patch_of(ball.x, ball.y, ball.radius, width, height)
-    if patch is None:
-        return True
-    # Work on a list of those pixels that the ball covers and that still let light by.
-    clear = pixels[patch.rows, patch.columns, 3] < 1.0 - least
-    j, i = np.nonzero(clear & (patch.q < 1.0))
-    if not len(j):
-        return bool(clear.any())
-    right, up = _offsets(patch, ball)
-    window = pixels[patch.rows, patch.columns]
-    for first in range(0, len(j), CHUNK):
-        down, across = j[first : first + CHUNK], i[first : first + CHUNK]
-        q = patch.q[down, across]
-        source = ball_source(q, right[across], up[down], shading, ball)
-        front = window[down, across]
-        blend_patch(front, source, "ONE_MINUS_DST_ALPHA", "ONE")
-        window[down, across] = front
-    return True
-
-
 def ball_source(
     q: Array, right: Array, up: Array, shading: Shading, ball: Ball
 ) -> Array:
@@ -176,7 +134,7 @@ def ball_source(
 
     # 1. Cut the footprint back by the noise at that place in the world.
     if detail is not None and points is not None:
-        noise = _noise_at(detail, points, np.zeros(3))
+        noise = noise_at(detail, points, np.zeros(3))
         weight = eroded_of(weight, noise, look.erosion)
 
     # 2. The light there, by sun: of the ball itself, or of the field; shaded by noise
@@ -195,7 +153,7 @@ def ball_source(
         sunlit = light[..., s, :]
         if noise is not None and detail is not None and points is not None:
             if look.relief > 0.0:
-                ahead = _noise_at(detail, points, step)
+                ahead = noise_at(detail, points, step)
                 sunlit = sunlit * lit_share_of(noise, ahead, look.relief)[..., None]
         color = color + sunlit
     color = color * ball.clear + ball.haze
@@ -233,8 +191,22 @@ def _places(
     return places
 
 
-def _noise_at(detail: VoxelGrid, points: list[Array], step: Array) -> Array:
-    """Sample the detail noise at points moved by a step."""
+def noise_at(detail: VoxelGrid, points: list[Array], step: Array) -> Array:
+    """Sample the detail noise at points moved by a step, unchecked.
+
+    Parameters
+    ----------
+    detail
+        The table.
+    points
+        x, y and z of the places, scene units, each of one shape.
+    step
+        Added to every place, shape (3,).
+
+    Returns
+    -------
+    The shape of the places.
+    """
     size = cell_size(detail)
     offset = (step - detail.lower) / size - 0.5
     x, y, z = (p / s + o for p, s, o in zip(points, size, offset, strict=True))

@@ -2,38 +2,35 @@
 
 The camera stands at the sun. Balls are drawn near to far; before a ball is drawn, the
 framebuffer is read back over its projection: the mean is the light that reaches it.
+`literal_light` does just that; here all balls read at once, in `sweeps`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
-from refcloud.camera import OrthographicCamera, project
 from refcloud.checking import checked
-from refcloud.conventions import Array, Observer
+from refcloud.conventions import Array, Observer, Skipped, Tolerance
+from refcloud.lighting.colours import gain_of
 from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.fragments import fragments
+from refcloud.lighting.lightview import LightView, light_view
 from refcloud.lighting.lit import LitMetaballs
+from refcloud.lighting.literal_light import carried_literally
 from refcloud.lighting.look import Look, LookName, named
-from refcloud.lighting.order import depth_order
+from refcloud.lighting.reuse import same_lights
+from refcloud.lighting.sweeps import carried, largest_gain
 from refcloud.metaballs import Metaballs
-from refcloud.optics import (
-    PHASE_MAN2003,
-    Medium,
-    Sun,
-    coupling_man2003,
-    largest_steady_tau,
-    scattered_man2003,
-)
-from refcloud.optics.extinction import held_share, split_share
-from refcloud.raster import framebuffer
-from refcloud.raster.blending import blend_patch
-from refcloud.raster.footprint import footprint_of, opacity_of, patch_of
-from refcloud.raster.splat import mean_of
+from refcloud.optics import Medium, Sun, phase
+from refcloud.raster import Framebuffer, framebuffer
 
+# Errors of a share that float32 may use up: lists of hundreds of balls round below it.
+LEAST_FLOAT32 = 3e-4
+MOST_GAIN = 0.9  # and gains that do not magnify these roundings more than tenfold
 FROM_ABOVE = np.array([0.0, 1.0, 0.0])
-BORDER = 1.02  # room around the cloud in the sun's buffer, as a factor
 
 
 @checked
@@ -43,6 +40,8 @@ def sunward(
     *,
     medium: Medium,
     look: Look | LookName = "cumulus",
+    tolerance: Tolerance = 0.0,
+    earlier: LitMetaballs | None = None,
     observe: Observer | None = None,
 ) -> LitMetaballs:
     """Carry every sun's light through the balls: pass 1.
@@ -60,6 +59,12 @@ def sunward(
         Extinction and albedo; coloured ones are carried channel by channel.
     look
         The rules, or their name.
+    tolerance
+        Largest change of a ball's colour, toward any eye, that ending the sweeps early
+        may make; 0 carries the light as exactly as float64 allows.
+    earlier
+        What an earlier call of that tolerance gave: a light that shines on the same
+        balls by the same rules as there is not carried again (L15).
     observe
         Called with (name, value): order and framebuffer of each light, as "sun 0
         order", "sun 0 buffer", ..., "sky ...", "ground ..."; of a coloured medium once
@@ -67,7 +72,7 @@ def sunward(
 
     Returns
     -------
-    The lit balls.
+    The lit balls; their `skipped` tells of the sweeps.
 
     Raises
     ------
@@ -76,39 +81,89 @@ def sunward(
 
     Source: paper M, eq 26 to 28, L04 to L09, L12, L13; E22 to E27.
     """
-    rules = named(look)
+    return lit_by(balls, suns, medium, named(look), tolerance, earlier, observe)
+
+
+# Carries one light over one channel, as `carried_literally` does.
+Carry = Callable[[LightView, Array, float, Look, float], tuple[Array, Framebuffer]]
+
+
+def lit_by(
+    balls: Metaballs,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    rules: Look,
+    tolerance: float,
+    earlier: LitMetaballs | None,
+    observe: Observer | None,
+    carry: Carry | None = None,
+) -> LitMetaballs:
+    """Carry every light through the balls without a check: the inner form of `sunward`.
+
+    Parameters
+    ----------
+    balls, suns, medium, rules, tolerance, earlier, observe
+        As `sunward`.
+    carry
+        How one light is carried; None for sweeps.
+
+    Returns
+    -------
+    As `sunward`.
+    """
     watch = observe or (lambda name, value: None)
     count = len(balls.radii)
-    light = np.zeros((len(suns), count, 3))
-    for number, sun in enumerate(suns):
-        if sun.irradiance.any():
-            share = light_share(
-                balls,
-                sun.direction,
-                medium,
-                rules,
-                rules.forward,
-                rules.buffer,
-                _labelled(watch, f"sun {number}"),
-            )
-            light[number] = share * sun.irradiance
-    ambient = np.zeros((count, 3))
-    for name, direction, color in (
+    lights = [
+        (f"sun {number}", sun.direction, sun.irradiance)
+        for number, sun in enumerate(suns)
+    ]
+    lights += [
         ("sky", FROM_ABOVE, rules.sky_light),
         ("ground", -FROM_ABOVE, rules.ground_light),
-    ):
-        if color.any():
-            share = light_share(
-                balls,
-                direction,
-                medium,
-                rules,
-                rules.sky_forward,
-                rules.sky_buffer,
-                _labelled(watch, name),
-            )
+    ]
+    worth = worth_of_light(balls, suns, medium, rules)
+    light = np.zeros((len(suns), count, 3))
+    ambient = np.zeros((count, 3))
+    sweeps: list[Sweeps] = []
+    kept = same_lights(earlier, balls, suns, medium, rules)
+    for number, (name, direction, color) in enumerate(lights):
+        if not color.any() or not count:
+            continue
+        is_sun = number < len(suns)
+        if earlier is not None and is_sun and number in kept.suns:
+            light[number] = earlier.light[kept.suns[number]]
+            continue
+        if earlier is not None and not is_sun and kept.ambient:
+            ambient = earlier.ambient
+            continue
+        share, done = light_share(
+            light_view(balls, direction, rules.buffer if is_sun else rules.sky_buffer),
+            medium,
+            rules,
+            rules.forward if is_sun else rules.sky_forward,
+            tolerance / worth if worth > 0.0 else 0.0,
+            _labelled(watch, name),
+            carry,
+        )
+        sweeps += done
+        if is_sun:
+            light[number] = share * color
+        else:
             ambient += share * color
-    return LitMetaballs(balls, tuple(suns), light, ambient, medium, rules)
+    skipped: list[Skipped] = []
+    if tolerance > 0.0 and sweeps:
+        # Nilpotent: as many sweeps as balls are exact, whatever the cloud.
+        left = sum(max(count - run.number, 0) for run in sweeps)
+        bound = worth * max(run.bound for run in sweeps)
+        of = count * len(sweeps)
+        skipped.append(Skipped("light", "sweeps over all balls", left, of, bound))
+    if earlier is not None and kept.number:
+        what = "lights that were carried before"
+        skipped.append(Skipped("light", what, kept.number, len(suns) + 2))
+        skipped += [row for row in earlier.skipped if row.bound > 0.0]
+    return LitMetaballs(
+        balls, tuple(suns), light, ambient, medium, rules, tuple(skipped)
+    )
 
 
 def _labelled(watch: Observer, light: str) -> Observer:
@@ -116,159 +171,86 @@ def _labelled(watch: Observer, light: str) -> Observer:
     return lambda name, value: watch(f"{light} {name}", value)
 
 
+class Sweeps(NamedTuple):
+    """How often one light was swept over one channel, and the error that is left."""
+
+    number: int
+    bound: float
+
+
 def light_share(
-    balls: Metaballs,
-    direction: Array,
+    view: LightView,
     medium: Medium,
     look: Look,
     forward: float,
-    side: int,
+    most: float,
     watch: Observer,
-) -> Array:
+    carry: Carry | None = None,
+) -> tuple[Array, list[Sweeps]]:
     """Give the share of one light that reaches each ball, unchecked.
 
     Parameters
     ----------
-    balls, medium, look
+    view
+        The balls as the light sees them.
+    medium, look
         As `sunward`.
-    direction
-        Toward the light, unit vector.
     forward
         k of the "split" rule.
-    side
-        Side of the square framebuffer, pixels.
+    most
+        Largest error of a share.
     watch
         Called with (name, value).
+    carry
+        How the light is carried; None for sweeps.
 
     Returns
     -------
-    Shape (N, 3), at least 0.
+    Shape (N, 3), at least 0; and the sweeps of each channel.
     """
-    share = np.empty((len(balls.radii), 3))
-    done: dict[tuple[float, float], int] = {}
+    # A grey medium is carried once, a coloured one channel by channel.
+    channels: dict[tuple[float, float], list[int]] = {}
     keys = zip(medium.sigma_t_rgb.tolist(), medium.albedo_rgb.tolist(), strict=True)
     for channel, key in enumerate(keys):
-        if key in done:  # a grey medium is carried once
-            share[:, channel] = share[:, done[key]]
-            continue
-        done[key] = channel
-        tau = ball_depths(balls, key[0], look)
-        share[:, channel] = _carry(
-            balls, direction, tau, key[1], look, forward, side, watch
-        )
-    return share
-
-
-def handed_on(look: Look, albedo: float, forward: float) -> Callable[[Array], Array]:
-    """Give the rule for the share of light that a depth of tau scatters onward.
-
-    Parameters
-    ----------
-    look
-        Its `scattering`, `solid_angle` and `gain` decide.
-    albedo
-        Scattered share of extinction.
-    forward
-        k of the "split" rule.
-
-    Returns
-    -------
-    A function from tau, any shape, to shares in [0, 1], the same shape.
-    """
-    if look.scattering == "split":
-        return lambda tau: split_share(tau, albedo * forward)
-    kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
-    if kappa > 1.0:
-        raise ValueError(
-            f"solid_angle: expected albedo 1.5 Omega / 4 pi of at most 1, got"
-            f" {kappa:.4g}; lower solid_angle or albedo"
-        )
-    limit = largest_steady_tau(kappa)
-    if look.gain == "refuse":
-        return lambda tau: scattered_man2003(tau, kappa, gain="refuse")
-    return lambda tau: held_share(tau, kappa, limit)
-
-
-def light_camera(
-    balls: Metaballs, direction: Array, side: int
-) -> tuple[OrthographicCamera, Array]:
-    """Place an orthographic camera at the light so that it sees every ball.
-
-    It looks at the cloud's middle as the origin: a cloud far out in the world is lit
-    along the same direction, to the last bits, as one at home.
-
-    Parameters
-    ----------
-    balls
-        At least one.
-    direction
-        Toward the light, unit vector.
-    side
-        Width and height of its framebuffer, pixels.
-
-    Returns
-    -------
-    The camera, and the centres as it counts them, shape (N, 3).
-    """
-    lower = (balls.centers - balls.radii[:, None]).min(axis=0)
-    upper = (balls.centers + balls.radii[:, None]).max(axis=0)
-    centers = balls.centers - 0.5 * (lower + upper)
-    reach = np.sqrt(np.square(centers).sum(axis=1)) + balls.radii
-    radius = float(reach.max()) * BORDER
-    camera = OrthographicCamera(
-        radius * direction,
-        np.zeros(3),
-        height_of_view=2.0 * radius,
-        width=side,
-        height=side,
+        channels.setdefault(key, []).append(channel)
+    depths = {key: ball_depths(view.balls, key[0], look) for key in channels}
+    rounds = most >= LEAST_FLOAT32 and all(
+        largest_gain(depths[key], key[1], look, forward) <= MOST_GAIN
+        for key in channels
     )
-    return camera, centers
-
-
-def _carry(
-    balls: Metaballs,
-    direction: Array,
-    tau: Array,
-    albedo: float,
-    look: Look,
-    forward: float,
-    side: int,
-    watch: Observer,
-) -> Array:
-    """Run pass 1 for one light and one colour channel: the literal loop."""
-    count = len(tau)
-    reached = np.zeros(count)
-    if count == 0:
-        return reached
-    scatter = handed_on(look, albedo, forward)
-    on_axis = scatter(tau)  # refuses here, before anything is drawn
-
-    # 1. The camera at the light; the buffer filled with white, the unblocked light.
-    camera, centers = light_camera(balls, direction, side)
-    x, y, depth, scale = project(camera, centers)
-    buffer = framebuffer(side, side, color=np.ones(4))
-    order = depth_order(balls, depth)
-    watch("order", order)
-    for k in order:
-        radius = float(balls.radii[k] * scale[k])
-        place = float(x[k]), float(y[k]), radius
-        patch = patch_of(*place, side, side)
-        weight = None
-        if patch is not None:
-            weight = footprint_of(patch.q, balls.kernel, look.footprint)
-        # 2. Read back: the light that reaches this ball is the mean over it.
-        mean = mean_of(buffer.pixels, *place, patch, look.readback, weight)
-        light = 1.0 if mean is None else float(mean[0])
-        reached[k] = light
-        # 3. Draw it: eq 27 at every pixel, c = 1 g + T c (eq 28).
-        if patch is None or weight is None:
-            continue
-        source = np.empty((*weight.shape, 4))
-        if look.transmittance == "linear":
-            source[..., :3] = (weight * (light * on_axis[k]))[..., None]
+    found = None
+    if carry is None:
+        found = fragments(view, look, np.float32 if rounds else np.float64)
+    share = np.empty((len(view.radius), 3))
+    sweeps: list[Sweeps] = []
+    for key, tau in depths.items():
+        watch("order", view.order)
+        if found is None:
+            literally = carry or carried_literally
+            reached, buffer = literally(view, tau, key[1], look, forward)
         else:
-            source[..., :3] = (scatter(weight * tau[k]) * light)[..., None]
-        source[..., 3] = opacity_of(weight, float(tau[k]), look.transmittance)
-        blend_patch(buffer.pixels[patch.rows, patch.columns], source)
-    watch("buffer", buffer)
-    return reached
+            result = carried(found, tau, key[1], look, forward, most)
+            sweeps.append(Sweeps(len(result.changes), result.bound))
+            reached = result.reached
+            buffer = framebuffer(view.side, view.side, color=np.ones(4))
+            planes = buffer.pixels.transpose(2, 0, 1).reshape(4, -1)
+            planes[:3, found.pixel] = result.buffer
+        watch("buffer", buffer)
+        share[:, channels[key]] = reached[:, None]
+    return share, sweeps
+
+
+def worth_of_light(
+    balls: Metaballs, suns: tuple[Sun, ...], medium: Medium, look: Look
+) -> float:
+    """Bound how much a ball's colour changes where all lights' shares change by 1.
+
+    Proved: a colour is the sum over the lights of share times irradiance, albedo,
+    phase function and the rule's gain (`ball_colours`); a phase function is largest
+    forward or backward. A pixel shows a mean of colours, so it changes by no more.
+    """
+    peak = float(np.max(phase(medium, np.array([-1.0, 1.0]))))
+    light = sum((sun.irradiance for sun in suns), np.zeros(3))
+    gain = gain_of(balls, medium, look).max(axis=0, initial=0.0)
+    sky = look.sky_light + look.ground_light
+    return float(np.max(peak * medium.albedo_rgb * gain * light + sky))

@@ -16,13 +16,6 @@ def framebuffer(width: int, height: int, color: Colour = (0, 0, 0, 0)) -> Buffer
     return [[list(color) for _ in range(width)] for _ in range(height)]
 
 
-def clear(buffer: Buffer, color: Colour) -> None:
-    """Set every pixel; twin of `refcloud.raster.clear`."""
-    for row in buffer:
-        for pixel in row:
-            pixel[:] = color
-
-
 def read_pixels(buffer: Buffer, rows: range, columns: range) -> Buffer:
     """Copy a box of pixels; twin of `refcloud.raster.read_pixels`."""
     return [[list(buffer[row][column]) for column in columns] for row in rows]
@@ -56,17 +49,21 @@ def blend(
     f_src = factor(src_factor, source, destination, constant)
     f_dst = factor(dst_factor, source, destination, constant)
     for s, d, fs, fd in zip(source, destination, f_src, f_dst, strict=True):
-        if equation == "FUNC_ADD":
-            result.append(s * fs + d * fd)
-        elif equation == "FUNC_SUBTRACT":
-            result.append(s * fs - d * fd)
-        elif equation == "FUNC_REVERSE_SUBTRACT":
-            result.append(d * fd - s * fs)
-        elif equation == "MIN":
-            result.append(min(s, d))
-        else:
-            result.append(max(s, d))
+        # The minimum and the maximum leave the factors out.
+        terms = (s, d) if equation in ("MIN", "MAX") else (s * fs, d * fd)
+        result.append(combined(*terms, equation))
     return result
+
+
+def combined(s: float, d: float, equation: str) -> float:
+    """Make one of two terms, by a blend equation."""
+    if equation == "FUNC_ADD":
+        return s + d
+    if equation == "FUNC_SUBTRACT":
+        return s - d
+    if equation == "FUNC_REVERSE_SUBTRACT":
+        return d - s
+    return min(s, d) if equation == "MIN" else max(s, d)
 
 
 def patch(
@@ -131,10 +128,13 @@ def read_mean(
     """Average pixel by pixel (E27); twin of `refcloud.raster.read_mean`."""
     width, height = len(buffer[0]), len(buffer)
     total, weights = [0.0] * 4, 0.0
-    for row, column, q in patch(x, y, radius, width, height):
+    reach = radius + 0.5 if area == "antialiased" else radius
+    for row, column, q in patch(x, y, reach, width, height):
         weight = 1.0 if area == "square" or q <= 1.0 else 0.0
         if area == "footprint":
             weight = footprint(q, kernel, name)
+        elif area == "antialiased":  # about the share of the pixel in the disc
+            weight = min(max(reach - math.sqrt(q) * reach, 0.0), 1.0)
         weights += weight
         for channel, value in enumerate(buffer[row][column]):
             total[channel] += weight * value

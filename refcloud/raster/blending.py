@@ -1,76 +1,41 @@
 """Blending: how a new colour and the framebuffer's own make one (paper M, eq 28).
 
-One rule per factor and one per equation, under OpenGL's names. ``blend_patch`` is the
-unchecked inner form for loops over thousands of patches; `blend` checks and calls it.
-
-The four dual-source factors of glBlendFunc (SRC1_...) need a second colour from a
-shader; there is none here, so they are refused by name.
+``blend_patch`` is the unchecked inner form for loops over thousands of patches in
+float64; `blend` checks, and rounds as the framebuffer's format has it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 
-from refcloud.checking import checked, complaint
+from refcloud.checking import checked
 from refcloud.conventions import Array, Shape
-from refcloud.raster.framebuffer import NOTHING, Framebuffer, Rgba, within
-
-Factor = Literal[
-    "ZERO",
-    "ONE",
-    "SRC_COLOR",
-    "ONE_MINUS_SRC_COLOR",
-    "DST_COLOR",
-    "ONE_MINUS_DST_COLOR",
-    "SRC_ALPHA",
-    "ONE_MINUS_SRC_ALPHA",
-    "DST_ALPHA",
-    "ONE_MINUS_DST_ALPHA",
-    "CONSTANT_COLOR",
-    "ONE_MINUS_CONSTANT_COLOR",
-    "CONSTANT_ALPHA",
-    "ONE_MINUS_CONSTANT_ALPHA",
-    "SRC_ALPHA_SATURATE",
-]
-Equation = Literal["FUNC_ADD", "FUNC_SUBTRACT", "FUNC_REVERSE_SUBTRACT", "MIN", "MAX"]
-
-
-def _saturate(source: Array, destination: Array, constant: Array) -> Array:
-    """Let colour in only as far as the buffer's alpha leaves room; alpha whole."""
-    room = np.minimum(source[..., 3:], 1.0 - destination[..., 3:])
-    return np.concatenate([room, room, room, np.ones_like(room)], axis=-1)
-
-
-# Factor of (source, destination, constant); a last axis of 1 is the same on RGBA.
-FACTORS: dict[str, Callable[[Array, Array, Array], Array]] = {
-    "ZERO": lambda s, d, c: np.zeros(1),
-    "ONE": lambda s, d, c: np.ones(1),
-    "SRC_COLOR": lambda s, d, c: s,
-    "ONE_MINUS_SRC_COLOR": lambda s, d, c: 1.0 - s,
-    "DST_COLOR": lambda s, d, c: d,
-    "ONE_MINUS_DST_COLOR": lambda s, d, c: 1.0 - d,
-    "SRC_ALPHA": lambda s, d, c: s[..., 3:],
-    "ONE_MINUS_SRC_ALPHA": lambda s, d, c: 1.0 - s[..., 3:],
-    "DST_ALPHA": lambda s, d, c: d[..., 3:],
-    "ONE_MINUS_DST_ALPHA": lambda s, d, c: 1.0 - d[..., 3:],
-    "CONSTANT_COLOR": lambda s, d, c: c,
-    "ONE_MINUS_CONSTANT_COLOR": lambda s, d, c: 1.0 - c,
-    "CONSTANT_ALPHA": lambda s, d, c: c[3:],
-    "ONE_MINUS_CONSTANT_ALPHA": lambda s, d, c: 1.0 - c[3:],
-    "SRC_ALPHA_SATURATE": _saturate,
-}
-
-# Result of (source, destination, source factor, destination factor).
-EQUATIONS: dict[str, Callable[[Array, Array, Array, Array], Array]] = {
-    "FUNC_ADD": lambda s, d, fs, fd: s * fs + d * fd,
-    "FUNC_SUBTRACT": lambda s, d, fs, fd: s * fs - d * fd,
-    "FUNC_REVERSE_SUBTRACT": lambda s, d, fs, fd: d * fd - s * fs,
-    "MIN": lambda s, d, fs, fd: np.minimum(s, d),  # the factors do not count
-    "MAX": lambda s, d, fs, fd: np.maximum(s, d),
-}
+from refcloud.raster.factors import (
+    Blending,
+    Equation,
+    Factor,
+    Numbers,
+    by_channel,
+    by_rule,
+)
+from refcloud.raster.formats import (
+    FIXED_POINT,
+    LARGEST_32,
+    Arithmetic,
+    Format,
+    stored,
+)
+from refcloud.raster.framebuffer import (
+    NOTHING,
+    Framebuffer,
+    Rgba,
+    linear_of,
+    refuse_other_box,
+    within,
+)
+from refcloud.raster.llvmpipe import blended_llvmpipe
 
 
 @checked
@@ -82,12 +47,15 @@ def blend(
     src_factor: Factor,
     dst_factor: Factor,
     *,
+    src_alpha: Factor | None = None,
+    dst_alpha: Factor | None = None,
     equation: Equation = "FUNC_ADD",
+    equation_alpha: Equation | None = None,
     constant: Rgba = NOTHING,
 ) -> None:
     """Blend a patch of colours into the framebuffer.
 
-    Formula: c = f_src c_src + f_dst c_dst (FUNC_ADD; nothing is clamped)
+    Formula: c = f_src c_src + f_dst c_dst (FUNC_ADD), rounded as the format has it
 
     Parameters
     ----------
@@ -99,8 +67,12 @@ def blend(
         New colours, RGBA, shape (h, w, 4).
     src_factor, dst_factor
         Factors of the new colour and of the buffer's, under OpenGL's names.
+    src_alpha, dst_alpha
+        Those of the alpha channel (glBlendFuncSeparate); None for the same.
     equation
         How the two products make one; MIN and MAX leave the factors out.
+    equation_alpha
+        That of the alpha channel (glBlendEquationSeparate); None for the same.
     constant
         RGBA of the CONSTANT factors, shape (4,).
 
@@ -125,12 +97,56 @@ def blend(
     """
     height, width, _ = buffer.pixels.shape
     rows, columns = within("rows", rows, height), within("columns", columns, width)
-    box = rows.stop - rows.start, columns.stop - columns.start
-    if source.shape[:2] != box:
-        expected = f"shape {(*box, 4)}, that of the box"
-        raise ValueError(complaint("source", expected, f"shape {source.shape}"))
+    refuse_other_box("source", source, rows, columns)
+    blending = Blending(
+        src_factor,
+        dst_factor,
+        src_alpha,
+        dst_alpha,
+        equation,
+        equation_alpha,
+        constant,
+    )
     destination = buffer.pixels[rows, columns]
-    blend_patch(destination, source, src_factor, dst_factor, equation, constant)
+    destination[:] = blended_as(
+        source, destination, blending, buffer.format, buffer.arithmetic
+    )
+
+
+def blended_as(
+    source: Array,
+    destination: Array,
+    blending: Blending,
+    format: Format,
+    arithmetic: Arithmetic = "ideal",
+) -> Array:
+    """Give what a framebuffer of a format holds after a blend, unchecked.
+
+    Parameters
+    ----------
+    source
+        New colours, linear RGBA, shape (..., 4).
+    destination
+        What the framebuffer holds, the same shape.
+    blending
+        Factors, equations and constant.
+    format, arithmetic
+        Of the framebuffer.
+
+    Returns
+    -------
+    Shape (..., 4), a new array.
+    """
+    if arithmetic == "llvmpipe" and format != "RGBA64F":
+        return blended_llvmpipe(source, destination, blending, format)
+    s, d, c = source, linear_of(destination, format), blending.constant
+    # A float format clamps nothing, except that a colour is a float32; the others clamp
+    # all that goes in.
+    if format in FIXED_POINT:
+        s, c = np.clip(s, 0.0, 1.0), np.clip(c, 0.0, 1.0)
+    elif format != "RGBA64F":
+        s, c = (np.clip(a, -LARGEST_32, LARGEST_32) for a in (s, c))
+    return stored(by_channel(by_rule, s, d, c, blending), format)
 
 
 def blend_patch(
@@ -141,7 +157,7 @@ def blend_patch(
     equation: str = "FUNC_ADD",
     constant: Array = NOTHING,
 ) -> None:
-    """Blend without a check: the inner form of `blend`.
+    """Blend in float64 without a check: the inner form of `blend`.
 
     Parameters
     ----------
@@ -168,12 +184,12 @@ def blend_patch(
 
 
 def blended(
-    source: Array,
-    destination: Array,
+    source: Numbers,
+    destination: Numbers,
     src_factor: str,
     dst_factor: str,
     equation: str,
-    constant: Array,
+    constant: Array = NOTHING,
 ) -> Array:
     """Give the blend of two arrays of colours by the general rule, unchecked.
 
@@ -188,6 +204,5 @@ def blended(
     -------
     RGBA, shape (..., 4).
     """
-    f_src = FACTORS[src_factor](source, destination, constant)
-    f_dst = FACTORS[dst_factor](source, destination, constant)
-    return EQUATIONS[equation](source, destination, f_src, f_dst)
+    rule = src_factor, dst_factor, equation
+    return by_rule(source, destination, constant, rule)

@@ -1,7 +1,7 @@
 """A splat writes one ball into the framebuffer; a readback reads what lies behind it.
 
-``splat_of``, ``over_patch`` and ``mean_of`` are the unchecked inner forms, for loops
-over thousands of balls; `splat` and `read_mean` check and call them.
+``splat_source`` and ``mean_of`` are the unchecked inner forms, for loops over thousands
+of balls; `splat` and `read_mean` check and call them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Colour
-from refcloud.raster.blending import blend_patch
+from refcloud.raster.blending import blended_as
+from refcloud.raster.factors import OVER
 from refcloud.raster.footprint import (
     Depth,
     Kernel,
@@ -28,7 +29,8 @@ from refcloud.raster.footprint import (
 )
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer
 
-Area = Literal["disc", "square", "footprint"]
+Area = Literal["disc", "square", "footprint", "antialiased"]
+SOFT_EDGE = 0.5  # pixels to either side of the rim over which "antialiased" falls to 0
 # Below this depth (1 - exp(-tau w)) / (1 - exp(-tau)) is w to the last bit of float64.
 THIN = 1e-16
 
@@ -83,61 +85,38 @@ def splat(
     >>> buffer.pixels[0, 0]
     array([1. , 0.5, 0.5, 0.5])
     """
-    splat_of(buffer.pixels, x, y, radius, emission, tau, kernel, name, law)
+    height, width, _ = buffer.pixels.shape
+    patch = patch_of(x, y, radius, width, height)
+    if patch is None:
+        return
+    weight = footprint_of(patch.q, kernel, name)
+    pixels = buffer.pixels[patch.rows, patch.columns]
+    source = splat_source(weight, emission, tau, law)
+    pixels[:] = blended_as(source, pixels, OVER, buffer.format, buffer.arithmetic)
 
 
-def splat_of(
-    pixels: Array,
-    x: float,
-    y: float,
-    radius: float,
-    emission: Array,
-    tau: float,
-    kernel: Kernel = "wyvill",
-    name: Name = "chord",
-    law: Law = "beer",
-) -> None:
-    """Blend one ball over the pixels without a check: the inner form of `splat`.
-
-    Parameters
-    ----------
-    pixels
-        Those of the framebuffer, shape (H, W, 4), written in place.
-    x, y, radius, emission, tau, kernel, name, law
-        As `splat`.
-    """
-    patch = patch_of(x, y, radius, pixels.shape[1], pixels.shape[0])
-    if patch is not None:
-        splat_patch(
-            pixels, patch, footprint_of(patch.q, kernel, name), emission, tau, law
-        )
-
-
-def splat_patch(
-    pixels: Array,
-    patch: Patch,
-    weight: Array,
-    emission: Array,
-    tau: float,
-    law: Law = "beer",
-) -> None:
-    """Blend one ball over the pixels where its patch and footprint are known.
+def splat_source(
+    weight: Array, emission: Array, tau: float, law: Law = "beer"
+) -> Array:
+    """Give what one ball adds to pixels, unchecked: light, and opacity.
 
     Parameters
     ----------
-    pixels
-        Those of the framebuffer, shape (H, W, 4), written in place.
-    patch, weight
-        From `patch_of` and `footprint_of`.
+    weight
+        Its footprint, shape (h, w).
     emission, tau, law
         As `splat`.
+
+    Returns
+    -------
+    RGBA, shape (h, w, 4), colour multiplied by opacity.
     """
     opacity = opacity_of(weight, tau, law)
     glow = opacity / -math.expm1(-tau) if tau > THIN else weight
     source = np.empty((CHANNELS, *weight.shape))  # as the framebuffer, by channel
     np.multiply(emission[:, None, None], glow, out=source[:3])
     source[3] = opacity
-    blend_patch(pixels[patch.rows, patch.columns], source.transpose(1, 2, 0))
+    return source.transpose(1, 2, 0)
 
 
 @checked
@@ -165,7 +144,9 @@ def read_mean(
         Its radius in pixels.
     area
         "disc": pixels whose centres lie in it; "square": those of its bounding square;
-        "footprint": those of the disc, weighted as the ball is drawn.
+        "footprint": those of the disc, weighted as the ball is drawn; "antialiased":
+        those around the disc, weighted by clip(radius - distance + 1/2, 0, 1), about
+        the share of the pixel that it covers.
     kernel
         The ball's density, for the area "footprint".
     footprint
@@ -211,6 +192,7 @@ def mean_of(
         The ball, as `read_mean`.
     patch, weight
         From `patch_of` and `footprint_of`; only the area "footprint" needs a weight.
+        The area "antialiased" makes its own.
     area
         As `read_mean`.
 
@@ -218,8 +200,14 @@ def mean_of(
     -------
     As `read_mean`.
     """
+    wide = radius + SOFT_EDGE
+    if area == "antialiased":
+        # Pixels just outside the ball's square count too.
+        patch = patch_of(x, y, wide, pixels.shape[1], pixels.shape[0])
     if patch is not None:
-        if area == "disc":
+        if area == "antialiased":
+            weight = np.clip(wide - np.sqrt(patch.q) * wide, 0.0, 1.0)
+        elif area == "disc":
             weight = np.less_equal(patch.q, 1.0).astype(np.float64)
         elif area == "square":
             weight = np.ones_like(patch.q)

@@ -96,6 +96,7 @@ def draw(model: Model, view: View) -> Picture:
         tolerance=view.tolerance,
         seed=view.seed,
         observe=view.observe,
+        backend=view.backend,
     )
 
 

@@ -121,6 +121,7 @@ def _draw(
         tolerance=view.tolerance,
         seed=view.seed,
         observe=view.observe,
+        backend=view.backend,
     )
 
 

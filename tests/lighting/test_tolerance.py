@@ -23,9 +23,8 @@ from refcloud.camera import Camera
 from refcloud.lighting import Haze, Look, eyeward, sunward
 from refcloud.metaballs import Metaballs
 
-# The two orders of drawing round apart, by last bits of a few dozen sums.
-ROUNDED = 1e-12
 tolerances = st.floats(-4.0, np.log10(0.3)).map(lambda power: 10.0**power)
+ROUNDED = 1e-12  # the two orders of drawing differ by last bits of a few dozen sums
 backdrops = st.sampled_from([None, BACKDROP, np.zeros_like(BACKDROP)])
 hazes = st.none() | st.builds(Haze, colours, st.floats(1.0, 50.0))
 
@@ -76,14 +75,22 @@ def test_faint_balls_are_left_out_counted_and_bounded() -> None:
 
 
 def test_balls_behind_an_opaque_front_are_left_out_and_counted() -> None:
-    spots = [[0, 0, 2], [0, 0, -2], [0.1, 0, -3]]
-    balls = Metaballs(spots, [2.0, 0.3, 0.3], [1e3, 1.0, 1.0])
-    rules = dataclasses.replace(LOOKS["man"], tau=None, transmittance="beer")
-    lit = sunward(balls, SUNS, medium=MEDIUM, look=rules)
-    _, rows = eyeward(lit, EYE, background=BACKDROP, tolerance=0.01)
-    (row,) = [row for row in rows if "opaque" in row.what]
-    assert (row.skipped, row.of) == (2, 3)
-    assert row.bound <= 0.01
+    # One thick ball before forty small ones; tiles in its middle see it alone.
+    small = scattered_balls(3, 40)
+    behind = small.centers * 0.2 - [0.0, 0.0, 3.0]
+    balls = Metaballs(
+        np.vstack([[0, 0, 2], behind]),
+        np.append(2.0, np.full(40, 0.3)),
+        np.append(1e3, np.ones(40)),
+    )
+    eye = Camera(EYE.eye, EYE.target, width=96, height=72)
+    for look in LOOKS.values():
+        rules = dataclasses.replace(look, tau=None, transmittance="beer")
+        lit = sunward(balls, SUNS, medium=MEDIUM, look=rules)
+        _, rows = eyeward(lit, eye, tolerance=0.01)
+        (row,) = [row for row in rows if "opaque" in row.what]
+        assert 40 <= row.skipped < row.of
+        assert 0.0 < row.bound <= 0.01
 
 
 def test_the_exact_picture_reports_what_cannot_show() -> None:
@@ -111,3 +118,59 @@ def test_the_noise_of_footprints_does_not_change_with_the_tolerance() -> None:
     eye = Camera(EYE.eye, EYE.target, width=60, height=45)
     exact = drawn(near, SUNS, camera=eye)
     assert np.abs(drawn(near, SUNS, camera=eye, tolerance=0.01) - exact).max() <= 0.01
+
+
+WIDE = Camera([0.5, 1.0, 7.0], [0, 0, 0], width=120, height=90)
+SMOOTH = dataclasses.replace(
+    LOOKS["man"], transmittance="beer", scattering="split", tau=None
+)
+# Where float32 and nodes serve: balls of one colour each, before a picture of tiles.
+smooth_looks = st.builds(
+    lambda law, name: dataclasses.replace(SMOOTH, transmittance=law, footprint=name),
+    st.sampled_from(["beer", "linear"]),
+    st.sampled_from(["chord", "profile"]),
+)
+
+
+@settings(max_examples=40)
+@given(
+    seeds,
+    st.integers(1, 150),
+    st.floats(-1.5, 1.0),
+    st.floats(-2.0, 2.0),
+    smooth_looks,
+    media,
+    st.floats(-5.3, -0.5).map(lambda power: 10.0**power),
+    st.sampled_from([0.0, 1.0, 20.0]),
+)
+def test_nor_do_float32_and_nodes(
+    seed, count, size, depth, look, medium, tolerance, behind
+) -> None:
+    balls = scattered_balls(seed, count)
+    balls = dataclasses.replace(
+        balls,
+        radii=10.0**size * balls.radii,
+        densities=10.0 ** (depth - size) * balls.densities,
+    )
+    lit = sunward(balls, SUNS, medium=medium, look=look)
+    background = np.full((90, 120, 3), behind) if behind else None
+    exact, _ = eyeward(lit, WIDE, background=background)
+    found, rows = eyeward(lit, WIDE, background=background, tolerance=tolerance)
+    assert np.abs(found - exact).max() <= tolerance
+    bounds = [row.bound for row in rows if row.stage == "eye"]
+    assert sum(bounds) <= tolerance * (1.0 + 1e-9)
+
+
+def test_each_saving_is_counted_with_its_bound() -> None:
+    balls = scattered_balls(2, 60)
+    wide = dataclasses.replace(balls, radii=3.0 * balls.radii)
+    lit = sunward(wide, SUNS, medium=MEDIUM, look=SMOOTH)
+    eye = dataclasses.replace(WIDE, width=240, height=180)
+    _, none = eyeward(lit, eye)
+    assert not any(row.bound > 1e-12 for row in none)
+    rows = {row.what: row for row in eyeward(lit, eye, tolerance=0.02)[1]}
+    double = rows["tiles in double precision"]
+    assert 0 < double.skipped == double.of
+    between = rows["pixels between nodes of smooth tiles"]
+    assert 0 < between.skipped < between.of == double.of * 256
+    assert double.bound + between.bound < 0.02

@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from refcloud.plain import raster as plain
-from refcloud.raster import Framebuffer, blend, framebuffer
-from refcloud.raster.blending import Equation, Factor, blend_patch, blended
+from refcloud.raster import Blending, Framebuffer, blend, draw_fragments, framebuffer
+from refcloud.raster.blending import blend_patch, blended, blended_as
+from refcloud.raster.factors import Equation, Factor
+from refcloud.raster.fragments import State
 
 FACTORS = typing.get_args(Factor)
 EQUATIONS = typing.get_args(Equation)
@@ -170,3 +172,104 @@ def test_a_wrong_name_is_refused(name: str) -> None:
     box = slice(0, 1), slice(0, 1)
     with pytest.raises(ValueError, match=f"src_factor.*got {name!r}"):
         blend(framebuffer(1, 1), *box, np.zeros((1, 1, 4)), name, "ONE")
+
+
+few = settings(max_examples=25)
+RULES = st.tuples(
+    st.sampled_from(FACTORS), st.sampled_from(FACTORS), st.sampled_from(EQUATIONS)
+)
+
+
+@few
+@given(source=patches(2, 2), below=patches(2, 2), rgb=RULES, alpha=RULES, c=COLOUR)
+def test_alpha_has_rules_of_its_own(source, below, rgb, alpha, c) -> None:
+    buffer, box = Framebuffer(below.copy()), (slice(None), slice(None))
+    blend(
+        buffer,
+        *box,
+        source,
+        *rgb[:2],
+        src_alpha=alpha[0],
+        dst_alpha=alpha[1],
+        equation=rgb[2],
+        equation_alpha=alpha[2],
+        constant=c,
+    )
+    colours_ = blended(source, below, *rgb, c)
+    alphas = blended(source, below, *alpha, c)
+    np.testing.assert_array_equal(buffer.pixels[..., :3], colours_[..., :3])
+    np.testing.assert_array_equal(buffer.pixels[..., 3], alphas[..., 3])
+
+
+@pytest.mark.parametrize("format", ["RGBA32F", "RGBA16F", "RGBA8", "SRGB8_ALPHA8"])
+@few
+@given(source=patches(2, 2), below=patches(2, 2), rgb=RULES, alpha=RULES, c=COLOUR)
+def test_both_arithmetics_stay_near_each_other(
+    format, source, below, rgb, alpha, c
+) -> None:
+    # Colours of [-4, 4]: two terms of at most 4 x 5 each; a step of float16 is there
+    # 1/64. Codes: source, factor and product rounded, each by half a code at most;
+    # llvmpipe's curve is 1.2e-3 off where a code is 3e-4 of linear light: 8 codes.
+    most = {"RGBA32F": 1e-5, "RGBA16F": 1 / 32, "RGBA8": 3.1 / 255}
+    buffer = framebuffer(2, 2, format=format)
+    draw_fragments(buffer, slice(None), slice(None), below)
+    rules = Blending(rgb[0], rgb[1], alpha[0], alpha[1], rgb[2], alpha[2], c)
+    ideal, driver = (
+        blended_as(source, buffer.pixels, rules, format, arithmetic)
+        for arithmetic in ("ideal", "llvmpipe")
+    )
+    assert np.abs(ideal - driver).max() <= most.get(format, 9.1 / 255)
+    if format in ("RGBA8", "SRGB8_ALPHA8"):
+        assert (ideal >= 0.0).all()
+        assert (ideal <= 1.0).all()
+
+
+@few
+@given(source=patches(3, 2), below=patches(3, 2))
+def test_without_blending_the_new_colour_stays(source, below) -> None:
+    box = slice(None), slice(None)
+    for state in (State(), State(blending=Blending())):
+        buffer = Framebuffer(below.copy())
+        draw_fragments(buffer, *box, source, state=state)
+        np.testing.assert_array_equal(buffer.pixels, source)
+
+
+def test_nothing_is_drawn_where_the_scissor_is_empty() -> None:
+    buffer, box = framebuffer(4, 4, depth=1.0), (slice(0, 3), slice(0, 3))
+    for rows in (slice(3, 9), slice(-5, 0), slice(2, 1)):
+        state = State(scissor=(rows, slice(0, 4)), depth_func="ALWAYS")
+        draw_fragments(buffer, *box, np.ones((3, 3, 4)), depth=0.5, state=state)
+    assert not buffer.pixels.any()
+    assert (buffer.depth == 1.0).all()
+
+
+def test_nearest_fragments_win_in_any_order() -> None:
+    state, box = State(depth_func="LESS"), (slice(0, 1), slice(0, 3))
+    red, blue = np.array([1.0, 0, 0, 1]), np.array([0, 0, 1.0, 1])
+    layers = [(red, [0.2, 0.6, 0.5]), (blue, [0.4, 0.4, 0.4])]
+    for order in (layers, layers[::-1]):
+        buffer = framebuffer(3, 1, depth=1.0)
+        for color, depth in order:
+            source = np.broadcast_to(color, (1, 3, 4))
+            draw_fragments(buffer, *box, source, depth=[depth], state=state)
+        assert buffer.pixels[0].tolist() == [red.tolist(), *[blue.tolist()] * 2]
+        assert buffer.depth.tolist() == [[0.2, 0.4, 0.4]]
+
+
+@pytest.mark.parametrize("name", ["SRC1_COLOR", "ONE_MINUS_SRC1_ALPHA"])
+def test_a_second_source_is_refused_by_name(name: str) -> None:
+    with pytest.raises(ValueError, match=f"dst_alpha: .*one of 'ZERO', .*got '{name}'"):
+        Blending(dst_alpha=name)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("format", ["RGBA32F", "RGBA16F", "RGBA8", "SRGB8_ALPHA8"])
+@pytest.mark.parametrize("arithmetic", ["ideal", "llvmpipe"])
+@few
+@given(source=COLOUR, rgb=RULES, huge=st.sampled_from([1e30, 1e300]))
+def test_no_colour_is_too_large(format, arithmetic, source, rgb, huge) -> None:
+    buffer = framebuffer(1, 1, color=source, format=format, arithmetic=arithmetic)
+    box, constant = (slice(None), slice(None)), source * -huge
+    for _ in range(2):  # the second blend meets what the first left
+        how = {"equation": rgb[2], "constant": constant}
+        blend(buffer, *box, source[None, None] * huge, *rgb[:2], **how)
+        assert np.isfinite(buffer.pixels).all()

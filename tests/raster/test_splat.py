@@ -27,7 +27,7 @@ RADIUS = st.floats(0.4, 12.0) | st.floats(-2, 8).map(lambda power: 10.0**power)
 KERNEL = st.sampled_from(["wyvill", "gaussian"])
 NAME = st.sampled_from(["chord", "profile"])
 LAW = st.sampled_from(["beer", "linear"])
-AREA = st.sampled_from(["disc", "square", "footprint"])
+AREA = st.sampled_from(["disc", "square", "footprint", "antialiased"])
 LIGHT = st.lists(st.floats(0.0, 10.0), min_size=3, max_size=3)
 
 

@@ -11,8 +11,8 @@ from hypothesis.extra.numpy import arrays
 import refcloud.lighting as array
 from refcloud.conventions import WHOLE_SPHERE
 from refcloud.lighting import erosion, lightfield, shading
-from refcloud.lighting.eyeward import RISE
-from refcloud.lighting.sunward import BORDER
+from refcloud.lighting.lightview import BORDER
+from refcloud.lighting.seen import RISE
 from refcloud.metaballs import Metaballs
 from refcloud.noise import uniform
 from refcloud.optics import Medium, Sun
@@ -89,7 +89,7 @@ looks = st.builds(
     scattering=st.sampled_from(["split", "man2003"]),
     transmittance=st.sampled_from(["beer", "linear"]),
     footprint=st.sampled_from(["chord", "profile"]),
-    readback=st.sampled_from(["footprint", "disc", "square"]),
+    readback=st.sampled_from(["footprint", "disc", "square", "antialiased"]),
     tau=st.none() | st.sampled_from([0.0, 0.5, 8.0, 30.0, 1e37]),
     forward=unit,
     solid_angle=st.sampled_from([0.0, 0.09, 1.0, 6.0]),
@@ -287,16 +287,16 @@ def ball_colours(draw: Draw):
     )
 
 
-@twin(array.eyeward, plain_eyeward.eyeward, tolerance=2e-13, why=MAGNIFIED)
-def passed_eyeward(draw: Draw):
+def seen_both_ways(draw: Draw, array_form: Any):
     lit, camera = drawn_lit(draw), drawn_camera(draw)
     shape = camera.height, camera.width, 3
     background = draw(st.none() | arrays(float, shape, elements=channels))
     haze = draw(st.none() | st.builds(array.Haze, colours, st.floats(0.5, 50.0)))
     seen: dict[str, Any] = {}
-    actual, _ = array.eyeward(
-        lit, camera, background=background, haze=haze, observe=seen.__setitem__
-    )
+    how: dict[str, Any] = {"background": background, "haze": haze}
+    actual, _ = array.eyeward(lit, camera, **how, observe=seen.__setitem__)
+    if array_form is array.eyeward_literal:
+        actual = array_form(lit, camera, **how)
     detail = seen.get("detail")
     if detail is not None:
         ends = (tuple(end.tolist()) for end in (detail.lower, detail.upper))
@@ -310,3 +310,13 @@ def passed_eyeward(draw: Draw):
         fixed=FIXED,
     )
     return actual, expected
+
+
+@twin(array.eyeward, plain_eyeward.eyeward, tolerance=2e-13, why=MAGNIFIED)
+def passed_eyeward(draw: Draw):
+    return seen_both_ways(draw, array.eyeward)
+
+
+@twin(array.eyeward_literal, plain_eyeward.eyeward, tolerance=2e-13, why=MAGNIFIED)
+def passed_eyeward_literal(draw: Draw):
+    return seen_both_ways(draw, array.eyeward_literal)

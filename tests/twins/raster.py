@@ -24,7 +24,7 @@ EQUATION = st.sampled_from(typing.get_args(Equation))
 KERNEL = st.sampled_from(["wyvill", "gaussian"])
 NAME = st.sampled_from(["chord", "profile"])
 LAW = st.sampled_from(["beer", "linear"])
-AREA = st.sampled_from(["disc", "square", "footprint"])
+AREA = st.sampled_from(["disc", "square", "footprint", "antialiased"])
 
 
 def _filled(draw: Draw, elements: st.SearchStrategy[float]) -> raster.Framebuffer:
@@ -38,15 +38,6 @@ def framebuffer(draw: Draw):
     width, height, color = draw(SIDE), draw(SIDE), draw(COLOUR)
     buffer = raster.framebuffer(width, height, color=color)
     return buffer.pixels, plain.framebuffer(width, height, color)
-
-
-@twin(raster.clear, plain.clear, tolerance=0, why="no arithmetic")
-def clear(draw: Draw):
-    buffer, color = _filled(draw, CHANNEL), draw(COLOUR)
-    expected = buffer.pixels.tolist()
-    raster.clear(buffer, color)
-    plain.clear(expected, color)
-    return buffer.pixels, expected
 
 
 @twin(raster.read_pixels, plain.read_pixels, tolerance=0, why="no arithmetic")
@@ -63,6 +54,7 @@ def read_pixels(draw: Draw):
 
 @twin(raster.blend, plain.blend, tolerance=0, why="the same products and sum")
 def blend(draw: Draw):
+    # Formats, and rules of alpha's own, stand in the rows of the framebuffer.
     buffer, constant = _filled(draw, CHANNEL), draw(COLOUR)
     source = draw(arrays(np.float64, buffer.pixels.shape, elements=CHANNEL))
     names, equation = (draw(FACTOR), draw(FACTOR)), draw(EQUATION)
