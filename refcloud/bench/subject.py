@@ -44,6 +44,8 @@ class Subject:
         a nanosecond is; None for no such column.
     digits
         Significant digits of the errors.
+    rms
+        Whether a column gives the errors' root mean square beside the largest.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Subject:
     unit: Unit = MS
     rate: tuple[str, float] | None = None
     digits: int = 1
+    rms: bool = False
 
 
 def run(subject: Subject, quick: bool = False) -> list[Row]:
@@ -93,7 +96,8 @@ def table(subject: Subject, rows: list[Row]) -> str:
     unit, rate = subject.unit, subject.rate
     head = ["task", "contender", unit.name, "spread"]
     head += [rate[0]] if rate else []
-    lines = [[*head, "x rival", "error"]]
+    last = ["x rival", "error", *(["rms"] if subject.rms else [])]
+    lines = [[*head, *last]]
     for row in rows:
         timing = row.timing
         middle, least, most = (
@@ -103,7 +107,8 @@ def table(subject: Subject, rows: list[Row]) -> str:
         if rate:
             line.append(f"{rate[1] / timing.median:.1f}" if timing.median > 0 else "-")
         line.append("-" if row.ratio is None else f"{row.ratio:.1f}")
-        line.append("-" if row.error is None else f"{row.error:.{subject.digits}g}")
+        errors = [row.error, row.rms] if subject.rms else [row.error]
+        line += ["-" if e is None else f"{e:.{subject.digits}g}" for e in errors]
         lines.append(line)
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
     text = [
