@@ -17,7 +17,7 @@ from refcloud.metaballs.solve import ROUGH, with_heights
 SEEDED, SHARES = 0.4, (0.6, 0.8, 1.0)
 # Few balls end in one of a few arrangements, where growth may be stuck: up to so many,
 # clusters of all balls are refined as well, and the better fit is kept.
-FEW = 300
+FEW = 200
 # Levenberg-Marquardt steps: before each growth; after the last one, on the voxels or on
 # a coarser grid; and on the voxels after a coarser grid.
 STAGE_STEPS, END_STEPS, COARSE_STEPS, LAST_STEPS = 4, 18, 24, 4
