@@ -116,7 +116,7 @@ def eyeward(
         else:
             found = shaded_tiles(lists, seen, drawn, shading, least)
         canvas.paint(lists, flat.groups, found.light, found.clear)
-        hidden += found.unseen
+        hidden += int(found.unseen.sum())
         entries += len(lists.ball)
     if hidden:
         what = "balls of a tile behind opaque ones"
