@@ -167,8 +167,9 @@ def certified_tiles(
     What was drawn, and the rows of the report.
     """
     share = most if most < 2.0 * MOST_FLOAT32 else MOST_FLOAT32
-    digits = share / brightest  # what rounding may change of one ball's opacity
-    if most < 0.5 * LEAST_FLOAT32 or not _fits(flat, digits):
+    # What rounding may change of one ball's opacity at the worst; the sample tells.
+    digits = 4.0 * share / brightest
+    if most < 0.4 * LEAST_FLOAT32 or not _fits(flat, digits):
         return exact_tiles(lists, flat, least), []
     # 1. Tiles of wide balls at their nodes, those pass whose last terms are small.
     how = least, np.float32, digits
