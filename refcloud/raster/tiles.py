@@ -106,7 +106,9 @@ def composite(
     deep = np.minimum(tau, DEEPEST[dtype])
     strength = deep * PER_E if beer else -np.expm1(-tau)
     footprints = Quadratics(lists, discs, strength, FORMS[name], places, direct, dtype)
-    hue = np.concatenate([colours, np.zeros((1, colours.shape[1]))]).astype(dtype)
+    # In rows of memory, whatever the order of `colours`: they are looked up by rows.
+    hue = np.zeros((len(tau) + 1, colours.shape[1]), dtype)
+    hue[:-1] = colours
 
     count, channels, size = len(lists.count), colours.shape[1], len(places[0])
     light = np.empty((count, channels, size), dtype)
