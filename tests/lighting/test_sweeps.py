@@ -39,7 +39,7 @@ def both(balls, sun, look, side, most=0.0, dtype=np.float64):
 
 
 @pytest.mark.parametrize("readback", readbacks)
-@settings(max_examples=40)
+@settings(max_examples=12)
 @given(clouds(30), directions, looks, st.sampled_from([1, 7, 40]))
 def test_sweeps_are_the_literal_loop(readback, balls, sun, look, side) -> None:
     if not len(balls):
@@ -53,7 +53,7 @@ def test_sweeps_are_the_literal_loop(readback, balls, sun, look, side) -> None:
     assert (untouched == 1.0).all()
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(
     seeds,
     st.integers(2, 60),
@@ -99,7 +99,7 @@ def test_a_chain_longer_than_any_list_is_carried_to_its_end() -> None:
     np.testing.assert_allclose(swept.reached, literal, rtol=0.0, atol=CLOSE)
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(clouds(20), suns_of(), media, looks, st.floats(-4, -0.5).map(lambda p: 10.0**p))
 def test_a_tolerance_of_light_holds_for_every_colour(
     balls, suns, medium, look, tolerance
@@ -115,7 +115,7 @@ def test_a_tolerance_of_light_holds_for_every_colour(
 
 
 @pytest.mark.parametrize("readback", readbacks)
-@settings(max_examples=30)
+@settings(max_examples=8)
 @given(clouds(20), directions, looks, st.sampled_from([1, 7, 40]))
 def test_one_channel_in_turn_is_the_literal_loop(
     readback, balls, sun, look, side
