@@ -1,7 +1,9 @@
 """From noise to a cloud map: ellipsoids, the cumulus shape, and the map's file."""
 
+from refcloud.cloudmap.box import box_corners, box_lines, box_triangles, resized_box
 from refcloud.cloudmap.connected import largest_part
 from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
+from refcloud.cloudmap.demand import box_cloud, box_coverage, placed_texture
 from refcloud.cloudmap.file import load_voxels, save_voxels
 from refcloud.cloudmap.generate import generate
 from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
@@ -11,6 +13,11 @@ from refcloud.cloudmap.voxels import VoxelGrid, cell_centres, cell_size
 
 __all__ = [
     "VoxelGrid",
+    "box_cloud",
+    "box_corners",
+    "box_coverage",
+    "box_lines",
+    "box_triangles",
     "cell_centres",
     "cell_size",
     "cumulus_ellipsoids",
@@ -21,7 +28,9 @@ __all__ = [
     "largest_part",
     "load_voxels",
     "modulate",
+    "placed_texture",
     "quadric",
+    "resized_box",
     "save_voxels",
     "trilinear",
     "worley_smooth_texture",
