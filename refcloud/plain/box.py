@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from refcloud.plain.smooth import worley_smooth
 
 Point = Sequence[float]  # x, y, z
+Corner = tuple[float, float, float]
 
 # Corners of each wall, counterclockwise as seen from outside.
 WALLS = ("0462", "1375", "0154", "2673", "0231", "4576")
@@ -22,13 +23,13 @@ def spanned(first: Point, second: Point) -> tuple[list[float], list[float]]:
     return lower, upper
 
 
-def box_corners(first: Point, second: Point) -> list[list[float]]:
+def box_corners(first: Point, second: Point) -> list[Corner]:
     """List the corners: z slowest, x fastest, the lower end first."""
     (x0, y0, z0), (x1, y1, z1) = spanned(first, second)
-    return [[x, y, z] for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)]
+    return [(x, y, z) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)]
 
 
-def box_lines(first: Point, second: Point) -> list[list[list[float]]]:
+def box_lines(first: Point, second: Point) -> list[list[Corner]]:
     """Join corners that differ along one axis."""
     corners = box_corners(first, second)
     lines = []
@@ -39,7 +40,7 @@ def box_lines(first: Point, second: Point) -> list[list[list[float]]]:
     return lines
 
 
-def box_triangles(first: Point, second: Point) -> list[list[list[float]]]:
+def box_triangles(first: Point, second: Point) -> list[list[Corner]]:
     """Cut each wall along its diagonal."""
     corners = box_corners(first, second)
     triangles = []
