@@ -1,5 +1,6 @@
 """From noise to a cloud map: ellipsoids, the cumulus shape, and the map's file."""
 
+from refcloud.cloudmap.billows import billows, carve, lumps_grid
 from refcloud.cloudmap.box import box_corners, box_lines, box_triangles, resized_box
 from refcloud.cloudmap.connected import largest_part
 from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
@@ -13,11 +14,13 @@ from refcloud.cloudmap.voxels import VoxelGrid, cell_centres, cell_size
 
 __all__ = [
     "VoxelGrid",
+    "billows",
     "box_cloud",
     "box_corners",
     "box_coverage",
     "box_lines",
     "box_triangles",
+    "carve",
     "cell_centres",
     "cell_size",
     "cumulus_ellipsoids",
@@ -27,6 +30,7 @@ __all__ = [
     "generate",
     "largest_part",
     "load_voxels",
+    "lumps_grid",
     "modulate",
     "placed_texture",
     "quadric",
