@@ -18,6 +18,7 @@ ROOMS = [
     "refcloud.image",
     "refcloud.cloudmap",
     "refcloud.metaballs",
+    "refcloud.transport",
     "refcloud.raster",
     "refcloud.lighting",
     "refcloud.sky",
