@@ -19,6 +19,7 @@ ROOMS = [
     "refcloud.cloudmap",
     "refcloud.metaballs",
     "refcloud.raster",
+    "refcloud.march",
     "refcloud.lighting",
     "refcloud.sky",
 ]
