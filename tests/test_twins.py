@@ -20,6 +20,7 @@ ROOMS = [
     "refcloud.metaballs",
     "refcloud.transport",
     "refcloud.raster",
+    "refcloud.march",
     "refcloud.lighting",
     "refcloud.sky",
 ]
