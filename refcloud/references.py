@@ -64,7 +64,11 @@ PIECES = {
     "N31": "D: Worley and smooth noise combined by remap",
     "N32": "D: the rejected gradient-noise attempt",
     "N33": "C: exponential filter of the cloud sheet",
+    "R01": "D: where a ray meets the box",
+    "R02": "D: a march with an adjustable sample rate",
+    "R03": "D: Beer's law along a ray",
     "R04": "D: the Henyey-Greenstein phase function",
+    "R05": "D: a march to the light at every sample",
     "V04": "M: the map of voxels",
     "V05": "M: clouds as united ellipsoid volumes",
     "V09": "D: a texture of noise in a box",
@@ -115,4 +119,5 @@ ERRATA = {
     "E33": ("remap divides by zero; max distance bounds nothing", "refused; diagonals"),
     "E34": ("document D's sky is nearly black", "as printed, and gradients that work"),
     "E36": ("Henyey-Greenstein cancels near |g| = 1", "a form that does not"),
+    "E38": ("three sliders without names; a sum that makes light", "`Mixing`; Beer"),
 }

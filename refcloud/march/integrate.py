@@ -1,0 +1,116 @@
+"""Any rays through a cloud: the one call of the march."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from refcloud.checking import checked
+from refcloud.cloudmap import VoxelGrid
+from refcloud.conventions import Array, Colour, Observer, Range, Shape, Tolerance
+from refcloud.march.cells import lattice
+from refcloud.march.exact import exact
+from refcloud.march.light import sources
+from refcloud.march.mixing import PHYSICAL, Mixing
+from refcloud.march.rays import as_rays, shaped
+from refcloud.optics import Medium, Sun
+from refcloud.refusal import complaint
+
+DARK = (0.0, 0.0, 0.0)
+
+
+@checked
+def integrate(
+    cloud: VoxelGrid,
+    origins: Annotated[Array, Shape("...", 3)],
+    directions: Annotated[Array, Shape("...", 3)],
+    *,
+    suns: Sun | tuple[Sun, ...],
+    medium: Medium,
+    tolerance: Tolerance = 0.0,
+    background: Colour | Annotated[Array, Shape("...", 3), Range(0.0)] | None = None,
+    ambient: Colour | None = None,
+    mixing: Mixing = PHYSICAL,
+    observe: Observer | None = None,
+) -> tuple[Array, Array]:
+    """Integrate light that is scattered once along any rays.
+
+    Formula: L = albedo p(cos_theta) E int sigma_t rho exp(-tau_view) exp(-tau_sun) dt
+    + albedo ambient (1 - T) + T background, summed over the suns
+
+    Parameters
+    ----------
+    cloud
+        The cloud map.
+    origins, directions
+        Of the rays, shape (..., 3) each, scene units; directions of any length but 0.
+        They broadcast.
+    suns
+        The lights.
+    medium
+        What the cloud is made of.
+    tolerance
+        Largest error of a channel that savings may make; 0 is a quadrature in every
+        space between voxel centres.
+    background
+        What lies behind, linear RGB, one colour or shape (..., 3); None for nothing.
+    ambient
+        Radiance that arrives from all sides alike, RGB; None for none. With albedo 1
+        this term holds every order of scattering.
+    mixing
+        Factors without a counterpart in physics, off by default.
+    observe
+        Called with (name, value) for each intermediate.
+
+    Returns
+    -------
+    Radiance of shape (..., 3), and transmittance of shape (...,), or (..., 3) by
+    channel where sigma_t is RGB.
+
+    Raises
+    ------
+    ValueError
+        Shapes do not fit, or a direction is zero.
+
+    Source: document D (R02 to R05); E20, E36, E38.
+
+    Examples
+    --------
+    >>> grid = VoxelGrid(np.ones((2, 2, 2)), [0, 0, 0], [2, 2, 2])
+    >>> how = dict(suns=Sun([0, 0, 1]), medium=Medium(0.5, phase="isotropic"))
+    >>> L, T = integrate(grid, [1.0, 1, 9], [[0.0, 0, -1]], **how)
+    >>> L.round(4), T.round(4)
+    (array([[0.4323, 0.4323, 0.4323]]), array([0.3679]))
+    """
+    rays = as_rays(origins, directions)
+    suns = (suns,) if isinstance(suns, Sun) else suns
+    refuse_unbounded(cloud, medium)
+    lit = sources(suns, medium, directions=rays.directions)
+    radiance, column = exact(
+        lattice(cloud), rays.origins, rays.directions, suns, lit, medium, mixing
+    )
+    through_cloud = mixing.light_absorption_through_cloud
+    tau = column[:, None] * (through_cloud * np.atleast_1d(medium.sigma_t))
+    through = np.exp(-tau)
+    if ambient is not None:
+        radiance += medium.albedo_rgb * ambient * -np.expm1(-tau)
+    radiance, transmittance = shaped(radiance, through, rays, medium)
+    if background is not None:
+        if background.shape not in ((3,), radiance.shape):
+            expected = f"shape (3,) or {radiance.shape}, that of the rays"
+            got = f"shape {background.shape}"
+            raise ValueError(complaint("background", expected, got))
+        radiance += through.reshape((*rays.shape, -1)) * background
+    return radiance, transmittance
+
+
+def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
+    """Refuse optical depths that are no longer numbers."""
+    densest = float(grid.density.max())
+    with np.errstate(over="ignore"):
+        across = np.sqrt(np.square(grid.upper - grid.lower).sum())
+        largest = float(np.max(medium.sigma_t)) * densest * across
+    if not largest < 1e300:
+        expected = "an optical depth below 1e300 across the cloud"
+        raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
