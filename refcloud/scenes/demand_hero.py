@@ -3,7 +3,7 @@
 The shape is that of the scene ``cumulus``, a pile of ellipsoids on a flat base, carved
 by Worley noise (`refcloud.cloudmap.billows`); the light is scattered in octaves
 (`refcloud.lighting.Octaves`), an approximation by name. Every cloud map is as fine as
-the picture shows it: a voxel is some three pixels.
+the picture shows it: a voxel is some two pixels.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ SUN = Sun(
     0.95 * WHOLE_SPHERE * np.array([1.0, 0.95, 0.86]),
 )
 MEDIUM = Medium(1.5, 1.0, 0.6, "hg")
-VOXEL_PIXELS = 2.7  # of a picture, where the cloud is
-FINEST, COARSEST = 0.15, 1.6  # scene units of the cloud's own
+VOXEL_PIXELS = 2.0  # of a picture, where the cloud is
+FINEST, COARSEST = 0.22, 1.6  # scene units of the cloud's own
 
 
 class Placed(NamedTuple):
@@ -80,7 +80,7 @@ def draw(model: Model, view: View) -> Picture:
             suns=tuple(turned_sun(sun, placed.turn) for sun in suns),
             medium=medium,
             octaves=Octaves(),
-            step=voxel,
+            step=0.5 * voxel,
             tolerance=view.tolerance / len(clouds),
             seed=view.seed,
             observe=view.observe,
@@ -91,7 +91,7 @@ def draw(model: Model, view: View) -> Picture:
         light = L + T[..., None] * light
         seconds["generate"] += middle - start
         seconds["march"] += time.perf_counter() - middle
-        skipped += rows
+        skipped += [*grid.skipped, *rows]
         what = "cloud" if placed is HERO else "field"
         voxels = np.count_nonzero(grid.density)
         notes.append(f"{what}: {voxels} voxels of {voxel:.2g}")
