@@ -79,7 +79,8 @@ def octave_march(
     Raises
     ------
     ValueError
-        The medium has another phase function, or extinction by channel.
+        The medium has another phase function, or extinction by channel; a ray would
+        have more than 65,536 steps, or the grid has more than 2^26 cells.
 
     Source: document D (R05), in octaves; an extension after Wrenninge, Kulla and
     Lundqvist, "Oz: The Great and Volumetric", 2013.

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.camera import Camera, OrthographicCamera, rays
-from refcloud.checking import checked
+from refcloud.checking import checked, complaint
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
 from refcloud.march import ray_box
@@ -28,6 +28,8 @@ from refcloud.noise import uniform
 
 Table = NDArray[Any]  # float64 or float32, as the caller asks
 DType = Literal["float64", "float32"]
+MOST_CELLS = 1 << 26  # 2 GB of float64, four numbers each
+MOST_STEPS = 1 << 16  # on a ray: more would take hours
 CHUNK = 1 << 14  # rays at a time: what all steps read and write stays in the cache
 Step = Annotated[float, Positive]
 Least = Annotated[float, Range(0.0, 1.0, open_upper=True)]
@@ -73,6 +75,9 @@ def shining_of(grid: VoxelGrid, sigma_t: float, dtype: DType) -> Shining:
     The table with colors 0.
     """
     D, H, W = grid.density.shape
+    if grid.density.size > MOST_CELLS:
+        got = f"{grid.density.size} cells"
+        raise ValueError(complaint("grid", f"at most {MOST_CELLS} cells", got))
     table = np.zeros((D + 2, H + 2, W + 2, 4), dtype)
     inner = table[1:-1, 1:-1, 1:-1, 3]
     np.multiply(grid.density, sigma_t, out=inner, casting="same_kind")
@@ -132,6 +137,11 @@ def march_shining(
     -------
     Radiance of shape (H, W, 3), and transmittance of shape (H, W).
 
+    Raises
+    ------
+    ValueError
+        A ray would have more than 65,536 steps, or the grid has more than 2^26 cells.
+
     Source: document D (R02, R03); E38.
 
     Examples
@@ -176,6 +186,10 @@ def marched(
     origins, directions = (a.reshape(-1, 3) for a in rays(camera))
     counts = np.array(cloud.occupied.shape[::-1]) - 1
     upper = cloud.lower + counts * cloud.size
+    across = float(np.sqrt(np.square(counts * cloud.size).sum()))
+    if across / MOST_STEPS > step:
+        expected = f"at least {across / MOST_STEPS:.3g}, {MOST_STEPS} steps on a ray"
+        raise ValueError(complaint("step", expected, f"{step:g}"))
     # 1. Rays that meet the box, and where each begins.
     t0, t1 = ray_box(origins, directions, lower=cloud.lower, upper=upper)
     hit = np.flatnonzero(t1 > t0)

@@ -222,12 +222,33 @@ def test_an_empty_grid_and_one_voxel() -> None:
         ({"medium": Medium([1, 2, 3], phase="hg")}, "sigma_t: expected one number"),
         ({"medium": Medium(1.0)}, "phase: expected 'hg' or 'isotropic'"),
         ({"step": 0.0}, "step: expected a finite number"),
+        ({"step": 1e-9}, "step: expected at least"),
         ({"tolerance": 2.0}, "tolerance: expected a finite number"),
     ],
 )
 def test_refusals_name_the_argument_in_one_line(change, message: str) -> None:
     with pytest.raises(ValueError, match=rf"^{message}[^\n]*$"):
         octave_march(BLOB, EYE, suns=(SUN,), **(HOW | change))
+
+
+def test_a_grid_of_too_many_cells_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = importlib.import_module("refcloud.lighting.shining")
+    monkeypatch.setattr(module, "MOST_CELLS", 100)
+    with pytest.raises(
+        ValueError, match=r"^grid: expected at most 100 cells, got 2184"
+    ):
+        octave_march(BLOB, EYE, suns=(SUN,), **HOW)
+
+
+def test_far_away_boxes_look_the_same() -> None:
+    move = np.array([1e6, -2e6, 5e5])
+    away = VoxelGrid(BLOB.density, BLOB.lower + move, BLOB.upper + move)
+    eye = Camera(EYE.eye + move, EYE.target + move, width=12, height=9)
+    here, there = (
+        octave_march(*c, suns=(SUN,), **HOW)[0] for c in ((BLOB, EYE), (away, eye))
+    )
+    # A place knows itself to 2e-10 there, and a cell is 0.15.
+    np.testing.assert_allclose(there, here, rtol=0.0, atol=1e-7)
 
 
 def test_refusals_of_the_model() -> None:
