@@ -19,7 +19,7 @@ from refcloud.cloudmap import (
 )
 from refcloud.image import Picture, srgb_encode
 from refcloud.lighting import Look
-from refcloud.noise import worley_drawn
+from refcloud.noise import worley_drawn, worley_grid, worley_smooth_grid
 from refcloud.optics import Medium, Sun
 from refcloud.render import render
 from refcloud.scene import SCENES, View
@@ -61,6 +61,31 @@ def test_n26_the_pictures_hold_the_numbers_of_the_document() -> None:
     )
     np.testing.assert_allclose(shown, values, rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(inverted, 255.0 - values, rtol=0.0, atol=1e-9)
+
+
+def test_n32_the_rejected_noise_hardly_shows_in_the_lumps() -> None:
+    picture = srgb_encode(drawn("perlin", View(204, 150)).linear[..., 0])
+    off = np.abs(picture[:, :100] - picture[:, 104:])
+    assert off[:75].mean() > 0.1, "each for itself they are other noises"
+    assert off[75:].mean() < 0.03
+    # Below are the lumps that each of them fills, as the texture has them.
+    x, y = (np.arange(100) + 0.5) * 4.0 / 150, (np.arange(75, 150) + 0.5) * 4.0 / 150
+    for detail, side in (("smooth", slice(100)), ("gradient", slice(104, None))):
+        lumps = worley_smooth_grid(x, y, [0.4], seed=3, octaves=3, detail=detail)
+        np.testing.assert_allclose(picture[75:, side], lumps[0], rtol=0.0, atol=1e-12)
+
+
+def test_n32_the_finer_noise_above_is_the_one_that_fills_the_lumps() -> None:
+    # remap(w, s - 1, 1, 0, 1) = v: from w and v the filling s follows.
+    view = View(40, 60)
+    line = (np.arange(40) + 0.5) * 4.0 / 60
+    w = 1.0 - worley_grid(line, line[:30], [0.4], seed=3, normalize="clip")[0]
+    for detail in ("smooth", "gradient"):
+        v = worley_smooth_grid(line, line[:30], [0.4], seed=3, octaves=3, detail=detail)
+        above = srgb_encode(demand_plane.filled(detail, view).linear[:30, :, 0])
+        clear = v[0] < 0.999
+        s = (w + 1.0 - 2.0 * v[0])[clear] / (1.0 - v[0])[clear]
+        np.testing.assert_allclose(above[clear], s, rtol=0.0, atol=1e-9)
 
 
 def test_e34_the_printed_sky_is_nearly_black_beside_the_mended_one() -> None:

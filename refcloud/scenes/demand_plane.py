@@ -1,8 +1,8 @@
 """The figures of document D in the plane: its noise, and its sky.
 
 ``demand-worley`` and ``demand-worley-inverted`` are Worley noise as first drawn;
-``demand-cells`` lays its cells and points over it; ``demand-perlin`` sets the texture's
-noise beside the gradient noise that did not look right (N32); ``demand-sky`` sets the
+``demand-cells`` lays its cells and points over it; ``demand-perlin`` sets smooth noise
+beside the gradient noise that did not look right (N32); ``demand-sky`` sets the
 printed sky, nearly black, beside a mended one (E34).
 """
 
@@ -18,14 +18,15 @@ from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
 from refcloud.conventions import Array
 from refcloud.image import Picture, srgb_decode
-from refcloud.noise import worley_drawn, worley_smooth_grid
-from refcloud.noise.worley_smooth import Detail
+from refcloud.noise import fbm_grid, smooth_grid, worley_drawn, worley_smooth_grid
+from refcloud.noise.worley_smooth import FINER, Detail
 from refcloud.scene import Model, Scene, View, enter
 from refcloud.scenes.demand_cells import cells_overlay
 from refcloud.sky import printed_gradient, sky_gradient
 
 SEED, POINTS = 3, 60
-SLICE, HEIGHT = 3.0, 0.4  # cells along a slice's longer side, and where it lies
+SLICE, HEIGHT = 4.0, 0.4  # cells along a slice's longer side, and where it lies
+FILLING = 3  # octaves of the finer noise
 TOP, BOTTOM = np.array([0.10, 0.24, 0.56]), np.array([0.55, 0.70, 0.88])
 PLAIN = np.full(3, 0.34)
 GAP = 4  # pixels between the pictures of a pair
@@ -47,19 +48,31 @@ def cells(model: Model, view: View) -> Picture:
 
 
 def rejected(model: Model, view: View) -> Picture:
-    """Draw the texture filled with smooth noise beside that with gradient noise."""
+    """Draw smooth noise beside gradient noise, and below the lumps they fill.
+
+    The document does not say what did not look right about it. Each for itself the two
+    look different; filled into the lumps they hardly do.
+    """
     flat_alone(view)
-    return pair(view, partial(slice_of, "smooth"), partial(slice_of, "gradient"))
+    return pair(view, partial(filled, "smooth"), partial(filled, "gradient"))
 
 
-def slice_of(detail: Detail, view: View) -> Picture:
-    """Draw a slice of the noise that the texture is made of."""
+def filled(detail: Detail, view: View) -> Picture:
+    """Draw a slice of the finer noise above, and of the texture that it fills below."""
     pixel = SLICE / max(view.width, view.height)
     x: Array = np.asarray(pixel * (np.arange(view.width) + 0.5), np.float64)
     y: Array = np.asarray(pixel * (np.arange(view.height) + 0.5), np.float64)
     z = np.array([HEIGHT])
-    noise = worley_smooth_grid(x, y, z, seed=SEED, octaves=5, detail=detail)
-    return greys(noise[0])
+    upper, lower = y[: view.height // 2], y[view.height // 2 :]
+    finer = FINER * x, FINER * upper, FINER * z
+    if detail == "smooth":
+        above = smooth_grid(*finer, seed=SEED, octaves=FILLING)[0]
+    else:
+        above = 0.5 + 0.5 * fbm_grid(*finer, seed=SEED, octaves=FILLING)[0][0]
+    below = worley_smooth_grid(x, lower, z, seed=SEED, octaves=FILLING, detail=detail)[
+        0
+    ]
+    return greys(np.concatenate([above, below]))
 
 
 def skies(model: Model, view: View) -> Picture:
@@ -128,7 +141,7 @@ for name, title, draw in (
     ("worley", "Worley noise in the plane", partial(worley, inverted=False)),
     ("worley-inverted", "Worley noise, inverted", partial(worley, inverted=True)),
     ("cells", "cells, points, and where one pixel looks", cells),
-    ("perlin", "the texture's noise beside the rejected gradient noise", rejected),
+    ("perlin", "smooth noise beside the rejected gradient noise", rejected),
     ("sky", "the sky as printed, and mended", skies),
 ):
     enter(Scene(f"demand-{name}", f"document D: {title}", no_model, draw))
