@@ -105,20 +105,10 @@ class Task:
         return max(light, float(behind), 1.0)
 
     def seen(self, radiance: Array, column: Array) -> tuple[Array, Array]:
-        """Complete what rays show.
-
-        Returns
-        -------
-        Colours of shape (N, 3), and transmittance of shape (N, 1), or (N, 3) where
-        sigma_t is RGB.
-        """
-        k = self.mixing.light_absorption_through_cloud
-        tau = column[:, None] * (k * np.atleast_1d(self.medium.sigma_t))
-        through = np.exp(-tau)
-        light = radiance + self.medium.albedo_rgb * self.ambient * -np.expm1(-tau)
-        if self.background is not None:
-            light = light + through * self.background
-        return light, through
+        """Complete what rays show; see `completed`."""
+        return completed(
+            radiance, column, self.medium, self.mixing, self.ambient, self.background
+        )
 
     def error(self, found: tuple[Array, Array], expected: tuple[Array, Array]) -> float:
         """Give the largest difference of a channel; alpha is one where it is shown."""
@@ -141,6 +131,37 @@ class Task:
             least,
             points,
         )
+
+
+def completed(
+    radiance: Array,
+    column: Array,
+    medium: Medium,
+    mixing: Mixing,
+    ambient: Array,
+    background: Array | None,
+) -> tuple[Array, Array]:
+    """Add light from all sides and from behind to what the suns' light gives.
+
+    Parameters
+    ----------
+    radiance, column
+        Of the rays, shapes (N, 3) and (N,).
+    medium, mixing, ambient, background
+        As of `Task`.
+
+    Returns
+    -------
+    Colours of shape (N, 3), and transmittance of shape (N, 1), or (N, 3) where sigma_t
+    is RGB.
+    """
+    k = mixing.light_absorption_through_cloud
+    tau = column[:, None] * (k * np.atleast_1d(medium.sigma_t))
+    through = np.exp(-tau)
+    light = radiance + medium.albedo_rgb * ambient * -np.expm1(-tau)
+    if background is not None:
+        light = light + through * background
+    return light, through
 
 
 def to_tolerance(
