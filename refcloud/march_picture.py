@@ -76,6 +76,7 @@ def draw_march(
         tolerance=tolerance,
         background=None if behind is None or haze else behind.reshape(-1, 3),
         observe=observe,
+        camera=camera,
     )
     size = (camera.height, camera.width)
     radiance = found.radiance.reshape(*size, 3)

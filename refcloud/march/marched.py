@@ -7,6 +7,7 @@ from typing import NoReturn
 
 import numpy as np
 
+from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.march.balls import exact_balls
@@ -56,6 +57,7 @@ def marched(
     tolerance: float,
     background: Array | None = None,
     observe: Observer | None = None,
+    camera: AnyCamera | None = None,
 ) -> Marched:
     """March rays, unchecked: the inner form of `integrate`.
 
@@ -69,6 +71,8 @@ def marched(
         As `integrate`.
     background
         What lies behind each ray, shape (N, 3); None for nothing.
+    camera
+        Whose rays they are, row by row; None for any rays.
 
     Returns
     -------
@@ -90,6 +94,7 @@ def marched(
         mixing,
         np.zeros(3) if ambient is None else ambient,
         background,
+        camera,
     )
     if tolerance > 0.0:
         radiance, column, rows, notes = to_tolerance(task, tolerance, observe)
