@@ -18,16 +18,19 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.march.cells import Lattice, cropped, lattice
 from refcloud.march.exact import exact
 from refcloud.march.fast import Setting, fast, light_volumes
 from refcloud.march.gather import Counts
-from refcloud.march.mixing import Mixing
+from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.march.quadrature import columns
+from refcloud.march.sliced import SLICINGS, Slicing, sliced
 from refcloud.noise import uniform
 from refcloud.optics import Medium, Sun
+from refcloud.transport import sun_depths
 
 CHECKED = 256  # rays of the sample
 # Gauss points of a piece on checked rays: two are off by less than a hundredth of the
@@ -68,6 +71,8 @@ class Task:
         Radiance from all sides, shape (3,).
     background
         What lies behind each ray, shape (N, 3); None where alpha is wanted.
+    camera
+        Whose rays they are, row by row; None for any rays.
     """
 
     cloud: VoxelGrid
@@ -80,6 +85,7 @@ class Task:
     mixing: Mixing
     ambient: Array
     background: Array | None
+    camera: AnyCamera | None = None
 
     def taken(self, which: NDArray[np.intp]) -> Task:
         """Keep some rays."""
@@ -105,20 +111,10 @@ class Task:
         return max(light, float(behind), 1.0)
 
     def seen(self, radiance: Array, column: Array) -> tuple[Array, Array]:
-        """Complete what rays show.
-
-        Returns
-        -------
-        Colours of shape (N, 3), and transmittance of shape (N, 1), or (N, 3) where
-        sigma_t is RGB.
-        """
-        k = self.mixing.light_absorption_through_cloud
-        tau = column[:, None] * (k * np.atleast_1d(self.medium.sigma_t))
-        through = np.exp(-tau)
-        light = radiance + self.medium.albedo_rgb * self.ambient * -np.expm1(-tau)
-        if self.background is not None:
-            light = light + through * self.background
-        return light, through
+        """Complete what rays show; see `completed`."""
+        return completed(
+            radiance, column, self.medium, self.mixing, self.ambient, self.background
+        )
 
     def error(self, found: tuple[Array, Array], expected: tuple[Array, Array]) -> float:
         """Give the largest difference of a channel; alpha is one where it is shown."""
@@ -141,6 +137,37 @@ class Task:
             least,
             points,
         )
+
+
+def completed(
+    radiance: Array,
+    column: Array,
+    medium: Medium,
+    mixing: Mixing,
+    ambient: Array,
+    background: Array | None,
+) -> tuple[Array, Array]:
+    """Add light from all sides and from behind to what the suns' light gives.
+
+    Parameters
+    ----------
+    radiance, column
+        Of the rays, shapes (N, 3) and (N,).
+    medium, mixing, ambient, background
+        As of `Task`.
+
+    Returns
+    -------
+    Colours of shape (N, 3), and transmittance of shape (N, 1), or (N, 3) where sigma_t
+    is RGB.
+    """
+    k = mixing.light_absorption_through_cloud
+    tau = column[:, None] * (k * np.atleast_1d(medium.sigma_t))
+    through = np.exp(-tau)
+    light = radiance + medium.albedo_rgb * ambient * -np.expm1(-tau)
+    if background is not None:
+        light = light + through * background
+    return light, through
 
 
 def to_tolerance(
@@ -174,8 +201,32 @@ def to_tolerance(
     expected = some.exact(0.1 * least, CHECKED_POINTS)
     watch("checked rays", sample)
 
-    # 2. Settings in turn, on the sample.
+    # 2. Slices, which march all rays of a camera or none.
     inner = cropped(task.cloud)
+    tried: dict[Slicing, float] = {}
+    for slicing in SLICINGS if task.camera and task.mixing == PHYSICAL else ():
+        found = by_slices(task, inner, slicing)
+        if found is None:
+            break
+        tried[slicing] = some.error((found[0][sample], found[1][sample]), expected)
+        if MARGIN * tried[slicing] <= tolerance:
+            watch("errors of slices", tried)
+            row = Skipped(
+                "march",
+                "exact rays",
+                len(found[1]),
+                len(found[1]),
+                MARGIN * tried[slicing],
+            )
+            note = (
+                f"march: slices, {slicing.finer:g} samples of the image and"
+                f" {slicing.scale} of light per cell; off by {tried[slicing]:.2g} at"
+                f" most on {len(sample)} checked rays"
+            )
+            return *found, (row,), (note,)
+    watch("errors of slices", tried)
+
+    # 3. Settings of slabs in turn, on the sample.
     small = lattice(inner)
     lights: dict[Literal[1, 2], list[NDArray[np.float32]]] = {}
 
@@ -206,7 +257,7 @@ def to_tolerance(
             break
     watch("errors of settings", errors)
 
-    # 3. All rays, with the one that passed.
+    # 4. All rays, with the one that passed.
     setting, error = next(reversed(errors.items()))
     if MARGIN * error > tolerance:
         radiance, column = task.exact(least)
@@ -230,6 +281,26 @@ def to_tolerance(
         f" per cell; off by {error:.2g} at most on {len(sample)} checked rays"
     )
     return radiance, column, rows, (note,)
+
+
+def by_slices(
+    task: Task, cloud: VoxelGrid, slicing: Slicing
+) -> tuple[Array, Array] | None:
+    """March a camera's rays by slices; None where they cannot serve."""
+    if task.camera is None:
+        return None
+    depths = [
+        sun_depths(cloud, sun.direction, scale=slicing.scale, dtype="float32")
+        for sun in task.suns
+    ]
+    return sliced(
+        cloud,
+        task.camera,
+        suns=task.suns,
+        medium=task.medium,
+        slicing=slicing,
+        depths=depths,
+    )
 
 
 def chosen_rays(task: Task) -> NDArray[np.intp]:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array
-from refcloud.march.cells import Lattice
+from refcloud.march.cells import Lattice, cropped, lattice
 from refcloud.march.gather import BLOCK, Counts, Slabs, gather
+from refcloud.march.light import sources
 from refcloud.march.lines import STEEPEST, Frame, as_lines, by_frame
-from refcloud.march.mixing import Mixing
+from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.march.planes import planes
 from refcloud.march.steps import reaching
 from refcloud.optics import Medium, Sun
@@ -170,3 +171,51 @@ def dilated(marked: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
             wide[tuple(high)] |= marked[tuple(low)]
         marked = wide
     return marked
+
+
+def march_slabs(
+    cloud: VoxelGrid,
+    origins: Array,
+    directions: Array,
+    *,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    thickness: float = 2.0,
+    scale: Literal[1, 2] = 1,
+    least: float = 1e-4,
+) -> tuple[Array, Array]:
+    """March any rays through slabs of one setting, unchecked, light volume included.
+
+    Parameters
+    ----------
+    cloud
+        The cloud map.
+    origins, directions
+        Shape (N, 3), scene units; unit vectors.
+    suns, medium
+        The lights, and what the cloud is made of.
+    thickness, scale
+        Cells in a slab, and samples of light per cell.
+    least
+        Transmittance below which a ray is dropped.
+
+    Returns
+    -------
+    Radiance of shape (N, 3), and columns of density of shape (N,).
+    """
+    inner = cropped(cloud)
+    setting = Setting(thickness, scale)
+    return fast(
+        inner,
+        lattice(inner),
+        origins,
+        directions,
+        suns=suns,
+        lit=sources(suns, medium, directions=directions),
+        medium=medium,
+        mixing=PHYSICAL,
+        setting=setting,
+        least=least,
+        counts=Counts(),
+        lights=light_volumes(inner, suns, medium, PHYSICAL, scale),
+    )
