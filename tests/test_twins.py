@@ -18,7 +18,9 @@ ROOMS = [
     "refcloud.image",
     "refcloud.cloudmap",
     "refcloud.metaballs",
+    "refcloud.transport",
     "refcloud.raster",
+    "refcloud.march",
     "refcloud.lighting",
     "refcloud.sky",
 ]

@@ -35,6 +35,8 @@ class Contender:
         What the result is compared with, None where its numbers are its own.
     rival
         Whether ratios of the task are taken to it.
+    distance
+        How far a result is from the reference's; None for the largest difference.
     """
 
     task: str
@@ -43,6 +45,7 @@ class Contender:
     work: Callable[[], Any]
     reference: Callable[[], Any] | None = None
     rival: bool = False
+    distance: Callable[[Any, Any], float] | None = None
 
 
 @dataclass(frozen=True)
@@ -67,7 +70,7 @@ class Row:
     ratio
         How many times faster than the task's rival, None without one.
     error
-        Largest distance from the reference, None without one.
+        Distance from the reference, None without one.
     rms
         The root of the mean of its square, None without one.
     """
@@ -110,8 +113,10 @@ def _ratio(rival: float | None, timing: Timing) -> float | None:
 def _errors(contender: Contender) -> tuple[float | None, float | None]:
     if contender.reference is None:
         return None, None
-    exact = np.asarray(contender.reference())
-    off = np.abs(np.asarray(contender.work()) - exact)
+    found, exact = np.asarray(contender.work()), np.asarray(contender.reference())
+    if contender.distance is not None:
+        return contender.distance(found, exact), None
+    off = np.abs(found - exact)
     return float(off.max()), float(np.sqrt(np.mean(off * off)))
 
 

@@ -6,7 +6,8 @@ import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
 
-from refcloud.cli.clouds import describe, find, load
+from refcloud.choices import framed
+from refcloud.cli.clouds import denser, describe, find, load
 from refcloud.cli.docstrings import parameter_texts, summary
 from refcloud.cli.options import Option, options_of
 from refcloud.cli.outputs import ready, report
@@ -24,8 +25,10 @@ from refcloud.cli.setting import (
     suns_for,
 )
 from refcloud.image import Picture
+from refcloud.march import Mixing
 from refcloud.metaballs import Levels, choose_level
-from refcloud.render import framed, render
+from refcloud.refusal import complaint
+from refcloud.render import as_drawn, render
 
 ABOUT = summary(render)
 TEXTS = parameter_texts(render)
@@ -49,6 +52,8 @@ def _options() -> tuple[tuple[Option, ...], tuple[Option, ...]]:
 
 OPTIONS, BACKGROUND = _options()
 SAVING = options_of(Picture.codes)
+DENSITY = options_of(denser, without=("cloud",))
+MIXING = options_of(Mixing)
 
 
 def command() -> Command:
@@ -65,7 +70,8 @@ def command() -> Command:
     made.group("the picture", "", OPTIONS)
     made.group("the camera", TEXTS["camera"], CAMERA)
     made.group("the light", TEXTS["suns"], SUN)
-    made.group("the cloud's medium", TEXTS["medium"], MEDIUM)
+    made.group("the cloud's medium", TEXTS["medium"], (*MEDIUM, *DENSITY))
+    made.group("how marched light mixes", TEXTS["mixing"], MIXING)
     made.group("behind the cloud", "", BACKGROUND)
     made.group("the file", "", SAVING)
     return made
@@ -91,19 +97,29 @@ def run(words: Sequence[str]) -> int:
         notes = [f"{what}: {describe(cloud)}"]
     levels = cloud if isinstance(cloud, Levels) else None
     cloud = cloud.finest if isinstance(cloud, Levels) else cloud
-    shown = None if isinstance(cloud, str) else cloud
+    method = chosen.get("method")
+    shown = None if isinstance(cloud, str) else as_drawn(cloud, method)
     camera = camera_for(given.of(CAMERA), shown, size)
-    medium, note = medium_for(given.of(MEDIUM), shown, chosen.get("look"))
+    scale, mixing = given.of(DENSITY), given.of(MIXING)
+    # A factor on the density counts against the file's own optical depth.
+    medium, note = medium_for(
+        given.of(MEDIUM), shown, chosen.get("look"), method, fixed=bool(scale)
+    )
     if levels is not None:
         camera = camera or framed(levels.finest, *size)
         cloud = choose_level(levels, camera, tolerance=chosen["tolerance"])
         notes.append(f"level of {len(cloud)} balls")
+    if not isinstance(cloud, str):
+        cloud = denser(cloud, **scale)
+    elif scale:
+        raise ValueError(complaint("--density", "none beside a scene", "one"))
     with stages.stage("render"):
         picture = render(
             cloud,
             camera=camera,
             suns=suns,
             medium=medium,
+            mixing=Mixing(**mixing) if mixing else None,
             **chosen,
             observe=stages.watch,
         )

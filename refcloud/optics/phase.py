@@ -119,9 +119,25 @@ def henyey_greenstein(
     >>> bool(henyey_greenstein([1.0], 0.6)[0] > henyey_greenstein([-1.0], 0.6)[0])
     True
     """
-    size = abs(g)
     toward = np.asarray(cos_theta) if g >= 0.0 else -np.asarray(cos_theta)
-    spread = (1.0 - size) ** 2 + 2.0 * size * (1.0 - toward)
+    return lobe_of(1.0 - toward, abs(g))
+
+
+def lobe_of(versed: Array, size: float) -> Array:
+    """Evaluate a forward lobe from 1 - cos_theta, unchecked.
+
+    Parameters
+    ----------
+    versed
+        1 - cos_theta, any shape; of a backward lobe 1 + cos_theta.
+    size
+        |g|, in [0, 1).
+
+    Returns
+    -------
+    The same shape, 1 / steradian.
+    """
+    spread = (1.0 - size) ** 2 + 2.0 * size * versed
     return (1.0 - size) * (1.0 + size) / (WHOLE_SPHERE * spread * np.sqrt(spread))
 
 

@@ -1,0 +1,160 @@
+"""One march for every caller: what was found, left out and noted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+
+from refcloud.camera import AnyCamera
+from refcloud.cloudmap import VoxelGrid, cell_size
+from refcloud.conventions import Array, Observer, Skipped
+from refcloud.march.balls import exact_balls
+from refcloud.march.cells import lattice
+from refcloud.march.certified import Task, completed, to_tolerance
+from refcloud.march.light import sources
+from refcloud.march.mixing import Mixing
+from refcloud.metaballs import Metaballs
+from refcloud.optics import Medium, Sun
+from refcloud.refusal import complaint
+
+# Optical depth of one voxel above which the answer of `tolerance=0` itself is off by
+# more than a ten-thousandth of white: shadows are sharper than the Gauss points.
+STEEPEST = 3.0
+BOUNDED = 1e300  # optical depths: their sums stay numbers
+
+
+@dataclass(frozen=True)
+class Marched:
+    """What a march found.
+
+    Attributes
+    ----------
+    radiance
+        Shape (N, 3); with what lies behind, where there is such.
+    transmittance
+        Shape (N, 1), or (N, 3) where sigma_t is RGB.
+    skipped, notes
+        What was left out, and what is to be told.
+    """
+
+    radiance: Array
+    transmittance: Array
+    skipped: tuple[Skipped, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def marched(
+    cloud: VoxelGrid | Metaballs,
+    origins: Array,
+    directions: Array,
+    *,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    ambient: Array | None,
+    mixing: Mixing,
+    tolerance: float,
+    background: Array | None = None,
+    observe: Observer | None = None,
+    camera: AnyCamera | None = None,
+) -> Marched:
+    """March rays, unchecked: the inner form of `integrate`.
+
+    Parameters
+    ----------
+    cloud
+        The cloud.
+    origins, directions
+        Shape (N, 3) each, scene units; unit vectors.
+    suns, medium, ambient, mixing, tolerance, observe
+        As `integrate`.
+    background
+        What lies behind each ray, shape (N, 3); None for nothing.
+    camera
+        Whose rays they are, row by row; None for any rays.
+
+    Returns
+    -------
+    What was found.
+    """
+    if isinstance(cloud, Metaballs):
+        return _balls_marched(
+            cloud, origins, directions, suns, medium, ambient, mixing, background
+        )
+    refuse_unbounded(cloud, medium)
+    task = Task(
+        cloud,
+        lattice(cloud),
+        origins,
+        directions,
+        suns,
+        sources(suns, medium, directions=directions),
+        medium,
+        mixing,
+        np.zeros(3) if ambient is None else ambient,
+        background,
+        camera,
+    )
+    if tolerance > 0.0:
+        radiance, column, rows, notes = to_tolerance(task, tolerance, observe)
+    else:
+        (radiance, column), rows, notes = task.exact(), (), ()
+    seen, through = completed(
+        radiance, column, medium, mixing, task.ambient, background
+    )
+    return Marched(seen, through, rows, notes + steep_note(cloud, medium))
+
+
+def _balls_marched(
+    balls: Metaballs,
+    origins: Array,
+    directions: Array,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    ambient: Array | None,
+    mixing: Mixing,
+    background: Array | None,
+) -> Marched:
+    """March metaballs: exact at any tolerance."""
+    with np.errstate(over="ignore"):
+        whole = float((balls.densities * balls.radii).sum(initial=0.0))
+        depth = float(np.max(medium.sigma_t) * np.float64(whole))
+    if not depth < BOUNDED:
+        _refuse_depth()
+    lit = sources(suns, medium, directions=directions)
+    found = exact_balls(balls, origins, directions, suns, lit, medium, mixing)
+    light = np.zeros(3) if ambient is None else ambient
+    return Marched(*completed(*found, medium, mixing, light, background))
+
+
+def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
+    """Refuse optical depths that are no longer numbers."""
+    densest = float(grid.density.max())
+    with np.errstate(over="ignore"):
+        across = np.sqrt(np.square(grid.upper - grid.lower).sum())
+        largest = float(np.max(medium.sigma_t)) * densest * across
+    if not largest < BOUNDED:
+        _refuse_depth()
+
+
+def _refuse_depth() -> NoReturn:
+    expected = f"an optical depth below {BOUNDED:g} across the cloud"
+    raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
+
+
+def steepest(grid: VoxelGrid, medium: Medium) -> float:
+    """Give the largest optical depth of one voxel, along its longest edge."""
+    densest = float(grid.density.max()) * float(cell_size(grid).max())
+    return float(np.max(medium.sigma_t)) * densest
+
+
+def steep_note(grid: VoxelGrid, medium: Medium) -> tuple[str, ...]:
+    """Note a cloud map whose voxels are too coarse for its optical depth."""
+    tau = steepest(grid, medium)
+    if tau <= STEEPEST:
+        return ()
+    return (
+        f"optical depth {tau:.3g} in one voxel: above {STEEPEST:g} edges of shadows are"
+        " finer than the voxels; lower sigma_t or use smaller voxels",
+    )

@@ -1,0 +1,75 @@
+"""Rays as the march takes them: one list of unit directions, in chunks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from refcloud.conventions import Array
+from refcloud.march.box import refuse_still
+from refcloud.optics import Medium
+from refcloud.refusal import complaint
+
+
+@dataclass(frozen=True)
+class Rays:
+    """A list of rays.
+
+    Attributes
+    ----------
+    origins
+        Shape (N, 3), scene units.
+    directions
+        Shape (N, 3), unit vectors.
+    shape
+        The leading axes that the caller's arrays have.
+    """
+
+    origins: Array
+    directions: Array
+    shape: tuple[int, ...]
+
+
+def as_rays(origins: Array, directions: Array) -> Rays:
+    """Make one list of arrays that broadcast; refuse what does not."""
+    refuse_still(directions)
+    try:
+        shape = np.broadcast_shapes(origins.shape, directions.shape)
+    except ValueError:
+        expected = f"a shape that fits origins of {origins.shape}"
+        got = f"shape {directions.shape}"
+        raise ValueError(complaint("directions", expected, got)) from None
+    largest = np.abs(directions).max(axis=-1, keepdims=True)
+    units = directions / largest  # no overflow, whatever the length
+    units = units / np.sqrt(np.square(units).sum(axis=-1, keepdims=True))
+    return Rays(
+        np.broadcast_to(origins, shape).reshape(-1, 3),
+        np.broadcast_to(units, shape).reshape(-1, 3),
+        shape[:-1],
+    )
+
+
+def shaped(
+    radiance: Array, through: Array, rays: Rays, medium: Medium
+) -> tuple[Array, Array]:
+    """Give results the caller's leading axes.
+
+    Parameters
+    ----------
+    radiance
+        Shape (N, 3).
+    through
+        Transmittance, shape (N, 1), or (N, 3) where sigma_t is RGB.
+    rays, medium
+        Of the call.
+
+    Returns
+    -------
+    Shapes (..., 3), and (...,) or (..., 3).
+    """
+    axes = () if np.ndim(medium.sigma_t) == 0 else (3,)
+    return (
+        radiance.reshape((*rays.shape, 3)),
+        through.reshape((*rays.shape, *axes)),
+    )
