@@ -73,6 +73,7 @@ PIECES = {
     "W04": "M: the cloud-map file",
     "W05": "M: the cloud file and the programs' parameters",
     "W12": "M, S, C: the same seed gives the same picture",
+    "X09": "M, S: multiple forward scattering, left as future work",
 }
 
 # Number: (what is printed or left open, what refcloud does).

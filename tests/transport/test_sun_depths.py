@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from twins.cloudmap import grids
 from twins.transport import directions
 
-from refcloud.cloudmap import VoxelGrid, cell_centres
+from refcloud.cloudmap import VoxelGrid
 from refcloud.noise import fbm_grid
 from refcloud.transport import column_density, sun_depths
 from refcloud.transport.sun import kept_volume

@@ -1,0 +1,90 @@
+"""How a cloud's light is solved: which directions, on which grid, how many sweeps.
+
+A plan is a list of stages, coarse to fine. Each starts from the light that the one
+before found: first few directions on coarse grids until little changes, then more
+directions for a last look. A step to finer grids or directions keeps all that was
+learned about light that wandered far; a sweep or two then put right what is near.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from refcloud.checking import check_fields
+from refcloud.conventions import Range
+from refcloud.transport.directions import DirectionCount
+
+GradeName = Literal["quick", "standard", "reference", "finest"]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage of a plan.
+
+    Attributes
+    ----------
+    directions
+        26, 50 or 128.
+    halvings
+        How often the plan's finest grid is halved for this stage.
+    most
+        Sweeps, at most; 1 is a look at the light that is there.
+    residual
+        Relative residual at which it ends.
+    """
+
+    directions: DirectionCount
+    halvings: Annotated[int, Range(0, 8)]
+    most: Annotated[int, Range(1, 10_000)]
+    residual: Annotated[float, Range(0.0, 1.0)] = 1e-3
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Stages, and the grid that they count from.
+
+    Attributes
+    ----------
+    stages
+        Coarse to fine.
+    depth
+        The grid is halved as long as its voxels stay thinner than this optical depth;
+        0 keeps the cloud's own grid.
+    double
+        Whether float64 is used instead of float32.
+    """
+
+    stages: tuple[Stage, ...]
+    depth: Annotated[float, Range(0.0)] = 0.0
+    double: bool = False
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if not self.stages:
+            raise ValueError("stages: expected at least one, got none")
+
+
+START = (Stage(26, 2, 60), Stage(26, 1, 60))
+PLANS: dict[str, Plan] = {
+    "quick": Plan((*START, Stage(50, 0, 1)), depth=0.3),
+    "standard": Plan((*START, Stage(26, 0, 2), Stage(50, 0, 1)), depth=0.3),
+    "reference": Plan((*START, Stage(50, 0, 60), Stage(128, 0, 1))),
+    "finest": Plan(
+        (
+            Stage(26, 2, 500, 1e-7),
+            Stage(26, 1, 500, 1e-7),
+            Stage(26, 0, 500, 1e-7),
+            Stage(128, 0, 500, 1e-7),
+        ),
+        double=True,
+    ),
+}
+
+
+def plan_for(tolerance: float) -> Plan:
+    """Choose the cheapest plan whose error a tolerance allows."""
+    return PLANS["finest"]
