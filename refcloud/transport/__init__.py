@@ -9,6 +9,7 @@ from refcloud.transport.delta_m import (
 )
 from refcloud.transport.directions import Directions, sphere_directions
 from refcloud.transport.harmonics import harmonics
+from refcloud.transport.paths import PathEstimate, trace_paths
 from refcloud.transport.plans import PLANS, Plan, Stage
 from refcloud.transport.scattering import (
     ScatteredLight,
@@ -23,6 +24,7 @@ __all__ = [
     "PLANS",
     "Directions",
     "LightVolume",
+    "PathEstimate",
     "Plan",
     "ScaledMedium",
     "ScatteredLight",
@@ -39,4 +41,5 @@ __all__ = [
     "sphere_directions",
     "sun_depths",
     "sweep",
+    "trace_paths",
 ]

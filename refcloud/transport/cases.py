@@ -10,6 +10,15 @@ from refcloud.optics import Medium, Sun
 ROUNDED = 1e-12  # relative: mixtures nearer than this are one
 
 
+def matters_of(medium: Medium) -> list[tuple[float, float, list[int]]]:
+    """Sort channels by their matter: sigma_t, albedo, and which channels."""
+    found: dict[tuple[float, float], list[int]] = {}
+    for c in range(3):
+        matter = float(medium.sigma_t_rgb[c]), float(medium.albedo_rgb[c])
+        found.setdefault(matter, []).append(c)
+    return [(*matter, channels) for matter, channels in found.items()]
+
+
 def cases_of(
     medium: Medium, suns: tuple[Sun, ...], sky: Array, ground: Array
 ) -> tuple[list[tuple[float, float, Array]], tuple[tuple[int, int, float], ...]]:
