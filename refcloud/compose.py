@@ -62,8 +62,8 @@ def draw_layers(
     The picture.
     """
     seconds: dict[str, float] = {}
-    clock = _Clock(seconds)
-    behind = _painted(background, camera, suns)
+    clock = Clock(seconds)
+    behind = painted(background, camera, suns)
     clock.stop("sky")
     skipped: list[Skipped] = []
     rgba = np.zeros((camera.height, camera.width, 4))
@@ -110,7 +110,7 @@ def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
     return tuple(sums.values())
 
 
-class _Clock:
+class Clock:
     """Adds the time since the last stop to a stage."""
 
     def __init__(self, seconds: dict[str, float]) -> None:
@@ -118,12 +118,13 @@ class _Clock:
         self.since = time.perf_counter()
 
     def stop(self, stage: str) -> None:
+        """Add the time since the last stop."""
         now = time.perf_counter()
         self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self.since
         self.since = now
 
 
-def _painted(background: Any, camera: AnyCamera, suns: tuple[Sun, ...]) -> Array | None:
+def painted(background: Any, camera: AnyCamera, suns: tuple[Sun, ...]) -> Array | None:
     """Give what stands behind the clouds, (H, W, 3), or None for nothing."""
     if isinstance(background, str):
         return None

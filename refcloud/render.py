@@ -5,15 +5,13 @@ from __future__ import annotations
 import dataclasses
 from typing import Annotated, Literal
 
-import numpy as np
-
-from refcloud.camera import Camera, OrthographicCamera, frame, refuse_large
+from refcloud.camera import Camera, OrthographicCamera, refuse_large
 from refcloud.checking import checked, complaint
+from refcloud.choices import AMBIENT, SUN, default_medium, framed
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import (
     MOST_PIXELS,
-    WHOLE_SPHERE,
     Array,
     Colour,
     Observer,
@@ -24,26 +22,20 @@ from refcloud.conventions import (
 )
 from refcloud.image import Picture
 from refcloud.lighting import Haze, Look, named
-from refcloud.lighting.depths import through_the_middle
 from refcloud.lighting.look import LookName
+from refcloud.march import Mixing
+from refcloud.march_picture import draw_march
 from refcloud.metaballs import Metaballs, voxel_balls
-from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
+from refcloud.optics import Medium, Sun
 from refcloud.scene import View, find_scene
 from refcloud.sky import Sky
 
 Side = Annotated[int, Range(1, MOST_PIXELS, "pixels")]
 Quality = Literal["quick", "final"]
+Method = Literal["splat", "march"]
 
 # Width and height where the caller names none.
 SIZES: dict[str, tuple[int, int]] = {"quick": (320, 240), "final": (1024, 768)}
-# Optical depth through a cloud's middle where the caller names no medium: a cumulus of
-# this thickness lets almost nothing through its middle and still has soft edges.
-THICKNESS = 40.0
-# Late-morning sun from the front left, a little warm; relief keeps back a part of it.
-SUN = Sun(
-    np.array([-0.62, 0.62, 0.42]),
-    1.75 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89]),
-)
 
 
 @checked
@@ -62,6 +54,10 @@ def render(
     | None = None,
     haze: Haze | None = None,
     look: Look | LookName | None = None,
+    method: Method | None = None,
+    scattering: Literal["single"] = "single",
+    ambient: Colour | None = None,
+    mixing: Mixing | None = None,
     tolerance: Tolerance = 0.0,
     quality: Quality = "final",
     seed: Seed = 0,
@@ -69,12 +65,13 @@ def render(
 ) -> Picture:
     """Render metaballs, a cloud map or a named scene.
 
-    Formula: pass 1 (eq 27) for each sun, then pass 2 (eq 29) over the background
+    Formula: pass 1 (eq 27) for each sun, then pass 2 (eq 29) over the background; or
+    the integral of `refcloud.march.integrate` for every pixel
 
     Parameters
     ----------
     cloud
-        Metaballs; a cloud map, drawn as one ball per occupied voxel; or a scene's name.
+        Metaballs, a cloud map, or a scene's name.
     camera
         The eye; None frames the cloud, or takes the scene's own.
     width, height
@@ -84,14 +81,25 @@ def render(
         The lights, one or several; None for one from the front left.
     medium
         What the cloud is made of; None sets sigma_t so that the optical depth through
-        the cloud's middle is 40.
+        the cloud's middle is 40, or 16 where it is marched.
     background
         A sky, one colour, or "transparent"; None for the default sky. Or a picture of
         the camera's size, shape (H, W, 3). Scenes bring their own.
     haze
         Air in front of the cloud; None for none. Scenes bring their own.
     look
-        Rules of the light, "cumulus" or "man"; None for "cumulus", or the scene's own.
+        Rules of splatted light, "cumulus" or "man"; None for "cumulus", or the scene's
+        own.
+    method
+        "splat" draws balls in two passes, a cloud map as one ball per occupied voxel;
+        "march" follows rays. None splats metaballs and marches cloud maps.
+    scattering
+        Light that is marched is scattered once.
+    ambient
+        Radiance that reaches a marched cloud from all sides alike, RGB; None for the
+        mean of a clear sky and the ground.
+    mixing
+        Factors on marched light without a counterpart in physics; None for none.
     tolerance
         Largest error of a channel that savings may make; 0 is exact.
     quality
@@ -110,7 +118,7 @@ def render(
     ValueError
         No scene has that name; the picture is over 64 megapixels.
 
-    Source: paper M, section 4 (W03).
+    Source: paper M, section 4 (W03); document D (R02).
     """
     if isinstance(suns, Sun):
         suns = (suns,)
@@ -118,14 +126,13 @@ def render(
     if isinstance(cloud, str):
         scene = find_scene(cloud)
         refuse_large(width, height)  # before the clouds are made
-        if background is not None or haze is not None:
-            raise ValueError(
-                complaint(
-                    "background" if haze is None else "haze",
-                    "none beside a scene's name, which brings its own",
-                    "one",
-                )
-            )
+        _refuse_beside_a_scene(
+            background=background,
+            haze=haze,
+            method=method,
+            ambient=ambient,
+            mixing=mixing,
+        )
         view = View(width, height, camera, suns, medium, look, tolerance, seed, observe)
         model = scene.model()
         picture = scene.draw(model, view)
@@ -135,31 +142,85 @@ def render(
             seconds={**model.seconds, **picture.seconds},
             notes=model.notes + picture.notes,
         )
+    drawn = as_drawn(cloud, method)
+    march = is_marched(cloud, method)
+    _refuse_idle(march, look=look, ambient=ambient, mixing=mixing)
     notes: list[str] = []
-    if isinstance(cloud, VoxelGrid):
-        cloud = voxel_balls(cloud)
-        notes.append(f"drawn as one ball per occupied voxel: {len(cloud.radii)} balls")
-    rules = named(look or "cumulus")
+    if drawn is not cloud and isinstance(drawn, Metaballs):
+        notes.append(f"drawn as one ball per occupied voxel: {len(drawn)} balls")
+    rules = None if march else named(look or "cumulus")
     if medium is None:
-        medium, note = default_medium(cloud, rules)
+        medium, note = default_medium(drawn, rules)
         notes.append(note)
     if camera is None:
-        camera = framed(cloud, width, height)
+        camera = framed(drawn, width, height)
         notes.append(
             "camera: eye {:.4g} {:.4g} {:.4g}, target {:.4g} {:.4g} {:.4g}".format(
                 *camera.eye, *camera.target
             )
         )
-    picture = draw_layers(
-        [Layer(cloud, medium, rules, haze)],
-        camera,
-        (SUN,) if suns is None else suns,
-        Sky() if background is None else background,
-        tolerance=tolerance,
-        seed=seed,
-        observe=observe,
-    )
+    behind = Sky() if background is None else background
+    lights = (SUN,) if suns is None else suns
+    if march:
+        if not isinstance(drawn, VoxelGrid):
+            raise ValueError(complaint("cloud", "a cloud map to march", "metaballs"))
+        picture = draw_march(
+            drawn,
+            camera,
+            lights,
+            behind,
+            medium=medium,
+            haze=haze,
+            ambient=AMBIENT if ambient is None else ambient,
+            mixing=mixing,
+            tolerance=tolerance,
+            observe=observe,
+        )
+    else:
+        assert isinstance(drawn, Metaballs)
+        assert rules is not None
+        picture = draw_layers(
+            [Layer(drawn, medium, rules, haze)],
+            camera,
+            lights,
+            behind,
+            tolerance=tolerance,
+            seed=seed,
+            observe=observe,
+        )
     return dataclasses.replace(picture, notes=(*notes, *picture.notes))
+
+
+def is_marched(cloud: Metaballs | VoxelGrid, method: Method | None) -> bool:
+    """Tell whether a cloud is marched, or drawn in two passes."""
+    return isinstance(cloud, VoxelGrid) if method is None else method == "march"
+
+
+def as_drawn(
+    cloud: Metaballs | VoxelGrid, method: Method | None
+) -> Metaballs | VoxelGrid:
+    """Give what a method draws: a cloud map that is splatted becomes balls."""
+    if isinstance(cloud, VoxelGrid) and method == "splat":
+        return voxel_balls(cloud)
+    return cloud
+
+
+def _refuse_beside_a_scene(**given: object) -> None:
+    """Refuse what a scene brings itself."""
+    for name, value in given.items():
+        if value is not None:
+            expected = "none beside a scene's name, which brings its own"
+            raise ValueError(complaint(name, expected, "one"))
+
+
+def _refuse_idle(march: bool, **given: object) -> None:
+    """Refuse what the chosen method has no use for."""
+    for name, value in given.items():
+        if value is not None and (name == "look") == march:
+            method, other = ("march", "splat") if march else ("splat", "march")
+            expected = f"none beside the method {method}"
+            advice = f"choose method {other}, or leave {name} out"
+            raise ValueError(complaint(name, expected, "one", advice))
 
 
 def size_of(width: int | None, height: int | None, quality: str) -> tuple[int, int]:
@@ -170,25 +231,3 @@ def size_of(width: int | None, height: int | None, quality: str) -> tuple[int, i
     if width is None:
         return max(round((height or 1) * across / down), 1), height or 1
     return width, height or max(round(width * down / across), 1)
-
-
-def default_medium(balls: Metaballs, look: Look) -> tuple[Medium, str]:
-    """Choose a medium, and say which."""
-    if look.tau is not None:
-        medium = Medium(1.0, ALBEDO_MAN2003)
-        return medium, f"medium: tau {look.tau:g} for every ball, albedo 0.9"
-    per_unit = through_the_middle(balls, 1.0)
-    if not per_unit > THICKNESS / 1e300:
-        return Medium(1.0), "medium: sigma_t 1, since the cloud's middle is empty"
-    sigma_t = THICKNESS / per_unit
-    note = f"medium: sigma_t {sigma_t:.4g}, optical depth {THICKNESS:g} in the middle"
-    return Medium(sigma_t), note
-
-
-def framed(balls: Metaballs, width: int, height: int) -> Camera:
-    """Frame a cloud's bounds; an empty cloud gets a unit box."""
-    if not len(balls.radii):
-        return frame(-np.ones(3), np.ones(3), width=width, height=height)
-    lower = (balls.centers - balls.radii[:, None]).min(axis=0)
-    upper = (balls.centers + balls.radii[:, None]).max(axis=0)
-    return frame(lower, upper, width=width, height=height)

@@ -6,21 +6,24 @@ import dataclasses
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from small_scenes import BACKDROP, BALLS, EXTENDED, EYE, MEDIUM, PAPER, SUNS, drawn
 from twins.lighting import scattered_balls, seeds
 
 from refcloud import scenes
-from refcloud.camera import Camera
+from refcloud.camera import Camera, rays
+from refcloud.choices import AMBIENT, THICKNESS
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Skipped
 from refcloud.lighting import Haze
 from refcloud.lighting.depths import through_the_middle
+from refcloud.march import Mixing, integrate
+from refcloud.march_picture import ONCE
 from refcloud.metaballs import Metaballs, voxel_balls
-from refcloud.optics import Sun
-from refcloud.render import SIZES, THICKNESS, render
+from refcloud.optics import Medium, Sun
+from refcloud.render import SIZES, render
 from refcloud.scene import SCENES, Model, Scene, View
 from refcloud.sky import Sky, clear_sky
 
@@ -93,8 +96,8 @@ def test_rows_of_layers_that_say_the_same_are_added_up() -> None:
     assert row == Skipped("eye", "balls off the picture", 2 * count, 2 * count)
 
 
-def test_a_cloud_map_is_drawn_as_its_voxels() -> None:
-    picture = render(GRID, background=BACKDROP, **HOW)
+def test_a_cloud_map_may_be_splatted_as_its_voxels() -> None:
+    picture = render(GRID, background=BACKDROP, method="splat", **HOW)
     balls = render(voxel_balls(GRID), background=BACKDROP, **HOW)
     np.testing.assert_array_equal(picture.linear, balls.linear)
     assert picture.notes[0] == "drawn as one ball per occupied voxel: 12 balls"
@@ -124,6 +127,7 @@ def test_the_default_medium_is_as_thick_as_it_says(seed, factor) -> None:
     )
     note = render(sized, width=2, height=2, look=EXTENDED).notes[0]
     sigma_t = float(note.split()[2].rstrip(","))
+    assume(through_the_middle(sized, 1.0) > 0.0)
     # The note gives four digits.
     assert through_the_middle(sized, sigma_t) == pytest.approx(THICKNESS, rel=1e-3)
 
@@ -251,3 +255,84 @@ def test_a_camera_far_off_sees_only_the_background() -> None:
     away = Camera([1e6, 0, 0], [2e6, 0, 0], width=4, height=3)
     picture = render(BALLS, **(HOW | {"camera": away}), background=[0.2, 0.2, 0.2])
     assert (picture.linear == 0.2).all()
+
+
+MARCHED = {"camera": EYE, "suns": SUNS, "medium": MEDIUM}
+
+
+def test_a_cloud_map_is_marched_over_the_background() -> None:
+    picture = render(GRID, background=BACKDROP, **MARCHED)
+    L, _ = integrate(
+        GRID,
+        *rays(EYE),
+        suns=SUNS,
+        medium=MEDIUM,
+        ambient=AMBIENT,
+        background=BACKDROP,
+    )
+    np.testing.assert_allclose(picture.linear, L, rtol=1e-13)
+    assert picture.notes == (ONCE,)
+    assert picture.alpha is None
+    clear = render(GRID, background="transparent", **MARCHED)
+    assert clear.alpha is not None
+    over = clear.linear + (1.0 - clear.alpha[..., None]) * BACKDROP
+    np.testing.assert_allclose(over, picture.linear, rtol=1e-12)
+
+
+def test_a_marched_cloud_in_haze_and_in_colour() -> None:
+    dark = {"ambient": [0, 0, 0], "background": "transparent"}
+    clear = render(GRID, **dark, **MARCHED)
+    haze = Haze([0.4, 0.5, 0.6], 20.0)
+    hazy = render(GRID, haze=haze, **dark, **MARCHED)
+    share = np.exp(-np.linalg.norm(EYE.eye) / 20.0)
+    assert clear.alpha is not None
+    air = (1.0 - share) * clear.alpha[..., None] * haze.color
+    np.testing.assert_allclose(hazy.linear, share * clear.linear + air, rtol=1e-12)
+    sigmas = [0.5, 1.5, 4.5]
+    coloured = render(GRID, **dark, **(MARCHED | {"medium": Medium(sigmas, 0.9)}))
+    for c, sigma_t in enumerate(sigmas):
+        grey = render(GRID, **dark, **(MARCHED | {"medium": Medium(sigma_t, 0.9)}))
+        # Other pieces are cut, so the quadrature's own error shows: 2.1e-5.
+        np.testing.assert_allclose(
+            coloured.linear[..., c], grey.linear[..., c], rtol=0.0, atol=5e-5
+        )
+
+
+def test_a_marched_cloud_is_framed_and_its_medium_chosen() -> None:
+    inner = VoxelGrid(np.pad(GRID.density, 2), [-3.5, -3, -3], [3.5, 3, 3])
+    picture = render(inner, width=8, height=6)
+    medium, camera, once, steep = picture.notes
+    assert "in one voxel" in steep
+    assert "optical depth 16 in the middle" in medium
+    assert camera == render(GRID, width=8, height=6).notes[1], "empty voxels count not"
+    assert once == ONCE
+    empty = VoxelGrid(np.zeros((2, 2, 2)), [-1, -1, -1], [1, 1, 1])
+    nothing = render(empty, width=8, height=6, background=[0.1, 0.2, 0.3])
+    assert (nothing.linear == [0.1, 0.2, 0.3]).all()
+
+
+def test_voxels_too_coarse_for_their_depth_are_told() -> None:
+    thick = Medium(1e4)
+    notes = render(GRID, **(MARCHED | {"medium": thick})).notes
+    assert any("optical depth 1e+04 in one voxel" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: render(GRID, look="man"), "look: expected none beside the method"),
+        (
+            lambda: render(BALLS, ambient=[1, 1, 1]),
+            "ambient: expected none beside the method splat",
+        ),
+        (
+            lambda: render(GRID, method="splat", mixing=Mixing()),
+            "mixing: expected none beside the method splat",
+        ),
+        (lambda: render("man-10", method="march"), "method: expected none beside a"),
+        (lambda: render(GRID, scattering="multiple"), "scattering: expected one of"),
+    ],
+)
+def test_what_a_method_has_no_use_for_is_refused(call, message) -> None:
+    with pytest.raises(ValueError, match=rf"^{message}[^\n]*$"):
+        call()

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
+from typing import Annotated
 
 from refcloud.cli.generate import describe as described_grid
 from refcloud.cloudmap import VoxelGrid, load_voxels
 from refcloud.cloudmap.file import FORMAT as VOXELS
+from refcloud.conventions import Range
 from refcloud.files import read_arrays
 from refcloud.metaballs import Metaballs, load_metaballs
 from refcloud.metaballs.file import FORMAT as METABALLS
@@ -50,6 +53,31 @@ def load(path: str) -> Metaballs | VoxelGrid:
         if _is(METABALLS, path):
             raise
         raise ValueError(f"{refusal}; {VOXELS} files are drawn too") from None
+
+
+def denser(
+    cloud: Metaballs | VoxelGrid,
+    *,
+    density: Annotated[float, Range(0.0, 1e9)] = 1.0,
+) -> Metaballs | VoxelGrid:
+    """Scale a cloud's density.
+
+    Parameters
+    ----------
+    cloud
+        What was loaded.
+    density
+        Factor on the density of the file's cloud.
+
+    Returns
+    -------
+    The cloud, itself where the factor is 1.
+    """
+    if density == 1.0:
+        return cloud
+    if isinstance(cloud, VoxelGrid):
+        return dataclasses.replace(cloud, density=density * cloud.density)
+    return dataclasses.replace(cloud, densities=density * cloud.densities)
 
 
 def _is(kind: str, path: str) -> bool:

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
 
-from refcloud.cli.clouds import describe, find, load
+from refcloud.cli.clouds import denser, describe, find, load
 from refcloud.cli.docstrings import parameter_texts, summary
 from refcloud.cli.options import Option, options_of
 from refcloud.cli.outputs import ready, report
@@ -24,7 +24,9 @@ from refcloud.cli.setting import (
     suns_for,
 )
 from refcloud.image import Picture
-from refcloud.render import render
+from refcloud.march import Mixing
+from refcloud.refusal import complaint
+from refcloud.render import as_drawn, render
 
 ABOUT = summary(render)
 TEXTS = parameter_texts(render)
@@ -48,6 +50,8 @@ def _options() -> tuple[tuple[Option, ...], tuple[Option, ...]]:
 
 OPTIONS, BACKGROUND = _options()
 SAVING = options_of(Picture.codes)
+DENSITY = options_of(denser, without=("cloud",))
+MIXING = options_of(Mixing)
 
 
 def command() -> Command:
@@ -64,7 +68,8 @@ def command() -> Command:
     made.group("the picture", "", OPTIONS)
     made.group("the camera", TEXTS["camera"], CAMERA)
     made.group("the light", TEXTS["suns"], SUN)
-    made.group("the cloud's medium", TEXTS["medium"], MEDIUM)
+    made.group("the cloud's medium", TEXTS["medium"], (*MEDIUM, *DENSITY))
+    made.group("how marched light mixes", TEXTS["mixing"], MIXING)
     made.group("behind the cloud", "", BACKGROUND)
     made.group("the file", "", SAVING)
     return made
@@ -88,15 +93,25 @@ def run(words: Sequence[str]) -> int:
         with stages.stage("load"):
             cloud = load(what)
         notes = [f"{what}: {describe(cloud)}"]
-    shown = None if isinstance(cloud, str) else cloud
+    method = chosen.get("method")
+    shown = None if isinstance(cloud, str) else as_drawn(cloud, method)
     camera = camera_for(given.of(CAMERA), shown, size)
-    medium, note = medium_for(given.of(MEDIUM), shown, chosen.get("look"))
+    scale, mixing = given.of(DENSITY), given.of(MIXING)
+    # A factor on the density counts against the file's own optical depth.
+    medium, note = medium_for(
+        given.of(MEDIUM), shown, chosen.get("look"), method, fixed=bool(scale)
+    )
+    if not isinstance(cloud, str):
+        cloud = denser(cloud, **scale)
+    elif scale:
+        raise ValueError(complaint("--density", "none beside a scene", "one"))
     with stages.stage("render"):
         picture = render(
             cloud,
             camera=camera,
             suns=suns,
             medium=medium,
+            mixing=Mixing(**mixing) if mixing else None,
             **chosen,
             observe=stages.watch,
         )

@@ -13,15 +13,16 @@ from typing import Any, Literal
 import numpy as np
 
 from refcloud.camera import Camera
+from refcloud.choices import SUN as DEFAULT_SUN
+from refcloud.choices import default_medium, framed
 from refcloud.cli.options import Option, options_of
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import unit_vector
 from refcloud.lighting import named
-from refcloud.metaballs import Metaballs, voxel_balls
+from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.render import SUN as DEFAULT_SUN
-from refcloud.render import default_medium, framed, render, size_of
+from refcloud.render import is_marched, render, size_of
 from refcloud.sky import Sky
 
 SKY = "sky"
@@ -86,16 +87,29 @@ def camera_for(
                 advice = "a scene's camera is given with --eye and --target"
                 raise ValueError(complaint(f"--{flag}", expected, "none", advice))
         return Camera(**given, width=width, height=height)
-    balls = voxel_balls(cloud) if isinstance(cloud, VoxelGrid) else cloud
-    return dataclasses.replace(framed(balls, width, height), **given)
+    return dataclasses.replace(framed(cloud, width, height), **given)
 
 
 def medium_for(
     given: Mapping[str, Any],
     cloud: Metaballs | VoxelGrid | None,
     look: Literal["cumulus", "man"] | None,
+    method: Literal["splat", "march"] | None,
+    *,
+    fixed: bool = False,
 ) -> tuple[Medium | None, tuple[str, ...]]:
-    """Complete the medium from `render`'s own choice; None where nothing was given.
+    """Complete the medium from `render`'s own choice; None where that is left to it.
+
+    Parameters
+    ----------
+    given
+        What was typed.
+    cloud
+        What is drawn: balls, or a cloud map that is marched; None for a scene.
+    look, method
+        How.
+    fixed
+        Whether the cloud will change, so that the choice must be made now.
 
     Returns
     -------
@@ -106,18 +120,18 @@ def medium_for(
     ValueError
         A scene's medium is given without its extinction.
     """
-    if not given:
+    if not given and not fixed:
         return None, ()
     if "g" in given and "phase" not in given:
         given = {**given, "phase": "hg"}  # the only phase function that has a g
     if "sigma_t" in given:
         return Medium(**given), ()
     if cloud is None:
-        expected = f"it beside --{next(iter(given))}"
+        expected = f"it beside --{next(iter(given), 'density')}"
         advice = "a scene's medium is given as a whole"
         raise ValueError(complaint("--sigma-t", expected, "none", advice))
-    balls = voxel_balls(cloud) if isinstance(cloud, VoxelGrid) else cloud
-    medium, note = default_medium(balls, named(look or "cumulus"))
+    rules = None if is_marched(cloud, method) else named(look or "cumulus")
+    medium, note = default_medium(cloud, rules)
     return dataclasses.replace(medium, **given), (note,)
 
 

@@ -7,6 +7,7 @@ Pieces that lie between eight empty centres hold nothing and are left out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +38,8 @@ class Lattice:
         centres i - 1 and i holds density.
     first, last
         The part of the box, in cells, outside which all is empty, shape (3,).
+    reaches_faces
+        Whether there is density on a face of the box.
     """
 
     values: Array
@@ -47,6 +50,7 @@ class Lattice:
     occupied: NDArray[np.bool_]
     first: Array
     last: Array
+    reaches_faces: bool
 
     def cells_of(self, points: Array) -> Array:
         """Turn points into coordinates in cells, shape (..., 3)."""
@@ -98,6 +102,7 @@ def lattice(grid: VoxelGrid) -> Lattice:
         occupied,
         first,
         last,
+        bool((first == -0.5).any() or (last == np.array(counts) - 0.5).any()),
     )
 
 
@@ -126,7 +131,12 @@ def most_rays(grid: Lattice) -> int:
     return max(1, CUTS // (sum(grid.counts) + 2))
 
 
-def cut(grid: Lattice, origins: Array, directions: Array) -> Pieces:
+def cut(
+    grid: Lattice,
+    origins: Array,
+    directions: Array,
+    toward: Sequence[Array] = (),
+) -> Pieces:
     """Cut rays into pieces; `most_rays` of them at a time.
 
     Parameters
@@ -135,6 +145,8 @@ def cut(grid: Lattice, origins: Array, directions: Array) -> Pieces:
         The cloud map.
     origins, directions
         Shape (N, 3), scene units; unit vectors.
+    toward
+        Of each sun: where its light passes an edge of the box the depth has a kink.
 
     Returns
     -------
@@ -159,8 +171,9 @@ def cut(grid: Lattice, origins: Array, directions: Array) -> Pieces:
         moving = speed != 0.0
         with np.errstate(over="ignore"):
             at = (planes - place[:, axis, None]) / np.where(moving, speed, 1.0)
-        at = np.where(moving, at, t0[:, None])
-        t.append(np.minimum(np.maximum(at, t0[:, None]), t1[:, None]))
+        t.append(_held(np.where(moving, at, t0[:, None]), t0, t1))
+    for sun in toward if grid.reaches_faces else ():
+        t.append(_held(_past_edges(grid, place, slope, sun / grid.size), t0, t1))
     cuts = np.sort(np.concatenate(t, axis=1), axis=1)
     length = np.diff(cuts, axis=1)
     ray, which = np.nonzero(length > 0.0)
@@ -183,6 +196,35 @@ def cut(grid: Lattice, origins: Array, directions: Array) -> Pieces:
         np.stack([begin[axis][keep] - space[axis] for axis in range(3)]),
         np.stack([step[axis][keep] for axis in range(3)]),
     )
+
+
+def _held(t: Array, t0: Array, t1: Array) -> Array:
+    return np.minimum(np.maximum(t, t0[:, None]), t1[:, None])
+
+
+def _past_edges(grid: Lattice, place: Array, slope: Array, sun: Array) -> Array:
+    """Find where rays cross the planes that hold an edge of the box and the sun's way.
+
+    Between them the light enters through one face, and the depth is smooth; in cells.
+    """
+    found = []
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        # Across the edge and the sun: (u, v) times (sun_v, -sun_u) is one number.
+        speed = (slope[:, u] * sun[v] - slope[:, v] * sun[u])[:, None]
+        moving = speed != 0.0
+        edges = np.array(
+            [
+                a * sun[v] - b * sun[u]
+                for a in (-0.5, grid.counts[u] - 0.5)
+                for b in (-0.5, grid.counts[v] - 0.5)
+            ]
+        )
+        ahead = edges - (place[:, u] * sun[v] - place[:, v] * sun[u])[:, None]
+        with np.errstate(over="ignore"):
+            at = ahead / np.where(moving, speed, 1.0)
+        found.append(np.where(moving, at, -np.inf))
+    return np.concatenate(found, axis=1)
 
 
 def corners_of(grid: Lattice, space: list[Numbers]) -> Array:

@@ -77,7 +77,7 @@ def _some(
     eyeward = mixing.light_absorption_through_cloud * sigma_t
 
     # 1. Cut the rays, and integrate the density up to each point.
-    pieces = cut(grid, origins, directions)
+    pieces = cut(grid, origins, directions, [sun.direction for sun in suns])
     mass = pieces.length * (density_at(pieces, POINTS) @ WEIGHTS)
     column = per_ray(pieces.ray, mass, count)
     before = before_each(pieces.ray, mass, count)

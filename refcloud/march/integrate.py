@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import numpy as np
-
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Colour, Observer, Range, Shape, Tolerance
-from refcloud.march.cells import lattice
-from refcloud.march.exact import exact
-from refcloud.march.light import sources
+from refcloud.march.marched import marched
 from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.march.rays import as_rays, shaped
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-
-DARK = (0.0, 0.0, 0.0)
 
 
 @checked
@@ -61,7 +55,7 @@ def integrate(
     mixing
         Factors without a counterpart in physics, off by default.
     observe
-        Called with (name, value) for each intermediate.
+        Called with (name, value) for each intermediate; "skipped" last.
 
     Returns
     -------
@@ -84,18 +78,21 @@ def integrate(
     (array([[0.4323, 0.4323, 0.4323]]), array([0.3679]))
     """
     rays = as_rays(origins, directions)
-    suns = (suns,) if isinstance(suns, Sun) else suns
-    refuse_unbounded(cloud, medium)
-    lit = sources(suns, medium, directions=rays.directions)
-    radiance, column = exact(
-        lattice(cloud), rays.origins, rays.directions, suns, lit, medium, mixing
+    found = marched(
+        cloud,
+        rays.origins,
+        rays.directions,
+        suns=(suns,) if isinstance(suns, Sun) else suns,
+        medium=medium,
+        ambient=ambient,
+        mixing=mixing,
+        tolerance=tolerance,
+        observe=observe,
     )
-    through_cloud = mixing.light_absorption_through_cloud
-    tau = column[:, None] * (through_cloud * np.atleast_1d(medium.sigma_t))
-    through = np.exp(-tau)
-    if ambient is not None:
-        radiance += medium.albedo_rgb * ambient * -np.expm1(-tau)
-    radiance, transmittance = shaped(radiance, through, rays, medium)
+    if observe is not None:
+        observe("skipped", found.skipped)
+    through = found.transmittance
+    radiance, transmittance = shaped(found.radiance, through, rays, medium)
     if background is not None:
         if background.shape not in ((3,), radiance.shape):
             expected = f"shape (3,) or {radiance.shape}, that of the rays"
@@ -103,14 +100,3 @@ def integrate(
             raise ValueError(complaint("background", expected, got))
         radiance += through.reshape((*rays.shape, -1)) * background
     return radiance, transmittance
-
-
-def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
-    """Refuse optical depths that are no longer numbers."""
-    densest = float(grid.density.max())
-    with np.errstate(over="ignore"):
-        across = np.sqrt(np.square(grid.upper - grid.lower).sum())
-        largest = float(np.max(medium.sigma_t)) * densest * across
-    if not largest < 1e300:
-        expected = "an optical depth below 1e300 across the cloud"
-        raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from refcloud.cloudmap import VoxelGrid, cell_centres
 from refcloud.conventions import Array
-from refcloud.march.cells import Lattice, Numbers, cut, density_at, most_rays
+from refcloud.march.cells import Lattice, Numbers, cut, density_at, lattice, most_rays
 
 # Two points integrate third degree exactly: the density of a piece.
 PAIR = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
@@ -86,3 +87,31 @@ def before_each(ray: Numbers, amounts: Array, count: int) -> Array:
     table = np.zeros((count, int(pieces.max(initial=0)) + 1))
     table[ray, number + 1] = amounts
     return np.cumsum(table, axis=1)[ray, number]
+
+
+def grid_through_the_middle(grid: VoxelGrid) -> float:
+    """Give a cloud map's mean column along x, y and z through its centre of mass.
+
+    Parameters
+    ----------
+    grid
+        The cloud map.
+
+    Returns
+    -------
+    Density times scene units, at least 0; 0 for an empty cloud.
+    """
+    peak = float(grid.density.max())
+    if not peak > 0.0:
+        return 0.0
+    shares = grid.density / peak  # no sum of them overflows
+    middle = np.empty(3)
+    for axis, places in enumerate(cell_centres(grid)):
+        across = tuple(k for k in range(3) if k != 2 - axis)
+        mass = shares.sum(axis=across)
+        middle[axis] = (mass / mass.sum()) @ places
+    # From the middle to the faces on both sides.
+    ways = np.concatenate([np.eye(3), -np.eye(3)])
+    found = columns(lattice(grid), np.broadcast_to(middle, (6, 3)), ways)
+    total = float(found.sum() / 3.0)
+    return total if np.isfinite(total) else 0.0

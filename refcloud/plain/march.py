@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from refcloud.plain.camera import Point, along, dot, unit
+from refcloud.plain.camera import Point, along, between, cross, dot, unit
 from refcloud.plain.cloudmap import Grid, cell_size, trilinear
 from refcloud.plain.optics import phase
 
@@ -133,7 +133,40 @@ def march_by_steps(
     return L, T
 
 
-def cuts(cloud: Cloud, origin: Point, direction: Point) -> list[float]:
+def past_edges(
+    cloud: Cloud, origin: Point, direction: Point, sun: Point
+) -> list[float]:
+    """List where a ray crosses planes that hold an edge of the box and the sun's way.
+
+    There the light begins to enter through another face, and the depth has a kink.
+    """
+    found = []
+    for axis in range(3):
+        edge = (float(axis == 0), float(axis == 1), float(axis == 2))
+        normal = cross(edge, sun)
+        speed = dot(normal, direction)
+        for corner in range(8 if speed != 0.0 else 0):
+            low, high = cloud.lower, cloud.upper
+            x, y, z = ((high if corner >> k & 1 else low)[k] for k in range(3))
+            found.append(dot(normal, between(origin, (x, y, z))) / speed)
+    return found
+
+
+def reaches_faces(density: Grid) -> bool:
+    """Tell whether there is density in an outermost voxel."""
+    D, H, W = len(density), len(density[0]), len(density[0][0])
+    return any(
+        density[k][j][i] > 0.0
+        for k in range(D)
+        for j in range(H)
+        for i in range(W)
+        if k in (0, D - 1) or j in (0, H - 1) or i in (0, W - 1)
+    )
+
+
+def cuts(
+    cloud: Cloud, origin: Point, direction: Point, suns: Sequence[Sun] = ()
+) -> list[float]:
     """List where a ray enters, crosses planes through voxel centres, and leaves."""
     t0, t1 = ray_box(origin, direction, cloud.lower, cloud.upper)
     found = {t0, t1}
@@ -143,6 +176,8 @@ def cuts(cloud: Cloud, origin: Point, direction: Point) -> list[float]:
         for i in range(counts[axis] if direction[axis] != 0.0 else 0):
             plane = cloud.lower[axis] + (i + 0.5) * size[axis]
             found.add((plane - origin[axis]) / direction[axis])
+    for sun in suns if reaches_faces(cloud.density) else ():
+        found.update(past_edges(cloud, origin, direction, sun.direction))
     return sorted(t for t in found if t0 <= t <= t1)
 
 
@@ -208,7 +243,7 @@ def integrate(
     """Integrate one ray; radiance and transmittance by channel."""
     direction = unit(direction)
     k = mixing.light_absorption_through_cloud
-    t = cuts(cloud, origin, direction)
+    t = cuts(cloud, origin, direction, suns)
     L, passed = [0.0, 0.0, 0.0], 0.0
     for start, end in following(t):
         thickest = k * max(medium.sigma_t)

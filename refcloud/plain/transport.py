@@ -5,7 +5,6 @@ Each function is the twin of the one of the same name in `refcloud.transport`.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -41,7 +40,8 @@ def column_density(
         return 0.0
     cuts = [near, *sorted(t for t in crossings if near < t < far), far]
     total = 0.0
-    for a, b in itertools.pairwise(cuts):
+    for i in range(len(cuts) - 1):
+        a, b = cuts[i], cuts[i + 1]
         for side in (-1.0, 1.0):
             t = 0.5 * (a + b) + side * 0.5 * (b - a) / math.sqrt(3.0)
             place = [s + t * move for s, move in zip(start, step, strict=True)]

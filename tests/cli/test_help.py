@@ -15,9 +15,11 @@ import pytest
 
 import refcloud as rc
 from refcloud.cli.bench import Measurement
+from refcloud.cli.clouds import denser
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
 from refcloud.conventions import Range
+from refcloud.march import Mixing
 from refcloud.noise_pictures import noise_picture
 
 # What each command takes its options from, and the parameters that words cannot give.
@@ -25,10 +27,12 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "generate": [(rc.generate, {"observe"})],
     "approximate": [(rc.approximate, {"grid", "observe"})],
     "render": [
-        (rc.render, {"cloud", "camera", "suns", "medium", "haze", "observe"}),
+        (rc.render, {"cloud", "camera", "suns", "medium", "haze", "mixing", "observe"}),
         (rc.Camera, {"width", "height"}),
         (rc.Sun, set()),
         (rc.Medium, set()),
+        (denser, {"cloud"}),
+        (Mixing, set()),
         (rc.Picture.save, {"self", "path"}),
     ],
     "compare": [

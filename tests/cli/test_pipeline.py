@@ -152,14 +152,52 @@ def test_parts_that_are_left_out_are_completed(cloud, run, small) -> None:
     assert rc.load_picture("e.png").alpha is not None
 
 
-def test_a_cloud_map_is_drawn_as_its_voxels(cloud, run, small) -> None:
+def test_a_cloud_map_may_be_splatted_as_its_voxels(cloud, run, small) -> None:
+    size = ["--width", 24, "--height", 18]
     status, out, _ = run(
-        "render", "small-voxels.npz", "--width", 24, "--height", 18, "--look", "man"
+        "render", "small-voxels.npz", *size, "--look", "man", "--method", "splat"
     )
     assert status == 0
     assert out.splitlines()[-1] == "small-voxels.png"
-    picture = rc.render(cloud[0], width=24, height=18, look="man", tolerance=1 / 255)
-    assert same_bytes(picture, "small-voxels.png")
+    how = {"width": 24, "height": 18, "method": "splat", "tolerance": 1 / 255}
+    assert same_bytes(rc.render(cloud[0], look="man", **how), "small-voxels.png")
+    part = run(
+        "render", "small-voxels.npz", *size, "--method", "splat", "--albedo", 0.9
+    )
+    assert "optical depth 40 in the middle" in part.out
+
+
+def test_a_cloud_map_is_marched(cloud, run, small) -> None:
+    line = (
+        "render small-voxels.npz --width 24 --height 18 --tolerance 0 --density 2"
+        " --sun -0.6 0.6 0.4 --eye 1 -2 40 --g 0.5 --albedo 0.9 --ambient 0.1 0.1 0.2"
+    )
+    status, out, err = run(*line.split())
+    assert (status, err) == (0, "")
+    assert "marched: light that is scattered more than once is left out\n" in out
+    assert "optical depth 16 in the middle" in out
+    sigma_t = float(re.findall(r"sigma_t (\S+),", out)[0])
+    grid = cloud[0]
+    dense = rc.VoxelGrid(2.0 * grid.density, grid.lower, grid.upper)
+    whole = rc.render(grid, width=24, height=18)
+    target = [
+        float(v) for v in re.findall(r"target (\S+) (\S+) (\S+)", whole.notes[1])[0]
+    ]
+    picture = rc.render(
+        dense,
+        camera=rc.Camera([1, -2, 40], target, width=24, height=18),
+        suns=rc.Sun([-0.6, 0.6, 0.4], rc.choices.SUN.irradiance),
+        medium=rc.Medium(sigma_t, 0.9, 0.5, "hg"),
+        ambient=[0.1, 0.1, 0.2],
+    )
+    # Both numbers were read from four printed digits.
+    written = rc.load_picture("small-voxels.png").linear
+    picture.save("expected.png")
+    difference = written - rc.load_picture("expected.png").linear
+    assert np.abs(difference).max() < 0.02
+    refused = run("render", "man-10", "--density", 2)
+    assert refused.status == 2
+    assert "--sigma-t: expected it beside --density" in refused.err
 
 
 def test_linear_light_may_be_written(run, small) -> None:

@@ -20,7 +20,7 @@ directions = st.tuples(part, part, part).filter(lambda d: max(map(abs, d)) > 0.1
     array.column_density,
     plain.column_density,
     tolerance=5e-14,
-    why="worst seen 2e-16; in cells of 0.08 at 5 a place is known to 1e-14 of a cell",
+    why="worst seen 5e-16; in cells of 0.08 at 5 a place is known to 1e-14 of a cell",
 )
 def column_density(draw: Draw):
     grid, direction = draw(grids()), draw(directions)
@@ -35,8 +35,8 @@ def column_density(draw: Draw):
 @twin(
     array.sun_depths,
     plain.sun_depths,
-    tolerance=2e-13,
-    why="?",
+    tolerance=5e-14,
+    why="worst seen 9e-16 in 600 examples; slopes of cells of 0.08 round to 1e-14",
 )
 def sun_depths(draw: Draw):
     grid, direction = draw(grids()), draw(directions)

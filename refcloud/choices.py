@@ -1,0 +1,73 @@
+"""What the door chooses where the caller does not: sun, sky's light, medium, frame."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refcloud.camera import Camera, frame
+from refcloud.cloudmap import VoxelGrid, cell_size
+from refcloud.conventions import WHOLE_SPHERE
+from refcloud.lighting import Look
+from refcloud.lighting.depths import through_the_middle
+from refcloud.march.quadrature import grid_through_the_middle
+from refcloud.metaballs import Metaballs
+from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
+
+# Optical depth through a cloud's middle where the caller names no medium: a cumulus of
+# this thickness lets almost nothing through its middle and still has soft edges.
+THICKNESS = 40.0
+# Marched, light that was scattered once comes from the outermost units of optical
+# depth; a cloud map's voxels hold them where the middle is no thicker than this.
+MARCHED_THICKNESS = 16.0
+# Late-morning sun from the front left, a little warm; relief keeps back a part of it.
+SUN = Sun(
+    np.array([-0.62, 0.62, 0.42]),
+    1.75 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89]),
+)
+# Mean radiance of a clear sky above and a grey ground below, by eye.
+AMBIENT = np.array([0.15, 0.21, 0.32])
+
+
+def default_medium(
+    cloud: Metaballs | VoxelGrid, look: Look | None
+) -> tuple[Medium, str]:
+    """Choose a medium, and say which; a look is for clouds that are splatted."""
+    if look is not None and look.tau is not None:
+        medium = Medium(1.0, ALBEDO_MAN2003)
+        return medium, f"medium: tau {look.tau:g} for every ball, albedo 0.9"
+    thickness = MARCHED_THICKNESS if look is None else THICKNESS
+    if isinstance(cloud, VoxelGrid):
+        per_unit = grid_through_the_middle(cloud)
+    else:
+        per_unit = through_the_middle(cloud, 1.0)
+    if not per_unit > thickness / 1e300:
+        return Medium(1.0), "medium: sigma_t 1, since the cloud's middle is empty"
+    sigma_t = thickness / per_unit
+    note = f"medium: sigma_t {sigma_t:.4g}, optical depth {thickness:g} in the middle"
+    return Medium(sigma_t), note
+
+
+def framed(cloud: Metaballs | VoxelGrid, width: int, height: int) -> Camera:
+    """Frame what a cloud fills; an empty one gets a unit box, or the map's own."""
+    if isinstance(cloud, VoxelGrid):
+        lower, upper = _filled(cloud)
+        return frame(lower, upper, width=width, height=height)
+    if not len(cloud.radii):
+        return frame(-np.ones(3), np.ones(3), width=width, height=height)
+    lower = (cloud.centers - cloud.radii[:, None]).min(axis=0)
+    upper = (cloud.centers + cloud.radii[:, None]).max(axis=0)
+    return frame(lower, upper, width=width, height=height)
+
+
+def _filled(grid: VoxelGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Give the corners of the occupied voxels' box."""
+    size = cell_size(grid)
+    lower, upper = grid.lower.copy(), grid.upper.copy()
+    occupied = grid.density > 0.0
+    for axis, n in enumerate(grid.density.shape[::-1]):
+        across = tuple(k for k in range(3) if k != 2 - axis)
+        where = np.flatnonzero(occupied.any(axis=across))
+        if len(where):
+            lower[axis] += where[0] * size[axis]
+            upper[axis] -= (n - 1 - where[-1]) * size[axis]
+    return lower, upper

@@ -1,0 +1,111 @@
+"""One march for every caller: what was found, left out and noted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from refcloud.camera import AnyCamera
+from refcloud.cloudmap import VoxelGrid, cell_size
+from refcloud.conventions import Array, Observer, Skipped
+from refcloud.march.cells import lattice
+from refcloud.march.exact import exact
+from refcloud.march.light import sources
+from refcloud.march.mixing import Mixing
+from refcloud.optics import Medium, Sun
+from refcloud.refusal import complaint
+
+# Optical depth of one voxel above which the answer of `tolerance=0` itself is off by
+# more than a ten-thousandth of white: shadows are sharper than the Gauss points.
+STEEPEST = 3.0
+
+
+@dataclass(frozen=True)
+class Marched:
+    """What a march found.
+
+    Attributes
+    ----------
+    radiance
+        Shape (N, 3).
+    transmittance
+        Shape (N, 1), or (N, 3) where sigma_t is RGB.
+    skipped, notes
+        What was left out, and what is to be told.
+    """
+
+    radiance: Array
+    transmittance: Array
+    skipped: tuple[Skipped, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def marched(
+    cloud: VoxelGrid,
+    origins: Array,
+    directions: Array,
+    *,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    ambient: Array | None,
+    mixing: Mixing,
+    tolerance: float,
+    camera: AnyCamera | None = None,
+    observe: Observer | None = None,
+) -> Marched:
+    """March rays, unchecked: the inner form of `integrate`.
+
+    Parameters
+    ----------
+    cloud
+        The cloud.
+    origins, directions
+        Shape (N, 3) each, scene units; unit vectors.
+    suns, medium, ambient, mixing, tolerance, observe
+        As `integrate`.
+    camera
+        Whose pixels the rays are, row by row; None for any rays.
+
+    Returns
+    -------
+    What was found.
+    """
+    refuse_unbounded(cloud, medium)
+    lit = sources(suns, medium, directions=directions)
+    radiance, column = exact(
+        lattice(cloud), origins, directions, suns, lit, medium, mixing
+    )
+    factor = mixing.light_absorption_through_cloud * np.atleast_1d(medium.sigma_t)
+    tau = column[:, None] * factor
+    if ambient is not None:
+        radiance += medium.albedo_rgb * ambient * -np.expm1(-tau)
+    return Marched(radiance, np.exp(-tau), (), steep_note(cloud, medium))
+
+
+def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
+    """Refuse optical depths that are no longer numbers."""
+    densest = float(grid.density.max())
+    with np.errstate(over="ignore"):
+        across = np.sqrt(np.square(grid.upper - grid.lower).sum())
+        largest = float(np.max(medium.sigma_t)) * densest * across
+    if not largest < 1e300:
+        expected = "an optical depth below 1e300 across the cloud"
+        raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
+
+
+def steepest(grid: VoxelGrid, medium: Medium) -> float:
+    """Give the largest optical depth of one voxel, along its longest edge."""
+    densest = float(grid.density.max()) * float(cell_size(grid).max())
+    return float(np.max(medium.sigma_t)) * densest
+
+
+def steep_note(grid: VoxelGrid, medium: Medium) -> tuple[str, ...]:
+    """Note a cloud map whose voxels are too coarse for its optical depth."""
+    tau = steepest(grid, medium)
+    if tau <= STEEPEST:
+        return ()
+    return (
+        f"optical depth {tau:.3g} in one voxel: above {STEEPEST:g} edges of shadows are"
+        " finer than the voxels; lower sigma_t or use smaller voxels",
+    )

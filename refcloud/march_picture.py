@@ -1,0 +1,93 @@
+"""A marched cloud before a background: one ray for every pixel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from refcloud.camera import AnyCamera, rays
+from refcloud.cloudmap import VoxelGrid
+from refcloud.compose import Clock, painted
+from refcloud.conventions import Array, Observer
+from refcloud.image import Picture
+from refcloud.lighting import Haze
+from refcloud.lighting.colours import clearness
+from refcloud.march import Mixing
+from refcloud.march.marched import marched
+from refcloud.optics import Medium, Sun
+
+ONCE = "marched: light that is scattered more than once is left out"
+
+
+def draw_march(
+    cloud: VoxelGrid,
+    camera: AnyCamera,
+    suns: tuple[Sun, ...],
+    background: Any,
+    *,
+    medium: Medium,
+    haze: Haze | None = None,
+    ambient: Array | None = None,
+    mixing: Mixing | None = None,
+    tolerance: float = 0.0,
+    observe: Observer | None = None,
+) -> Picture:
+    """Draw a cloud by marching.
+
+    Parameters
+    ----------
+    cloud
+        A cloud map.
+    camera
+        The eye.
+    suns
+        The lights.
+    background
+        As `render`.
+    medium, haze, ambient, mixing
+        As `render`; the haze counts the distance to the cloud's middle.
+    tolerance
+        Largest error of a channel.
+    observe
+        Called with (name, value) for each intermediate.
+
+    Returns
+    -------
+    The picture.
+    """
+    seconds: dict[str, float] = {}
+    clock = Clock(seconds)
+    behind = painted(background, camera, suns)
+    clock.stop("sky")
+    origins, directions = rays(camera)
+    found = marched(
+        cloud,
+        origins.reshape(-1, 3),
+        directions.reshape(-1, 3),
+        suns=suns,
+        medium=medium,
+        ambient=ambient,
+        mixing=mixing or Mixing(),
+        tolerance=tolerance,
+        camera=camera,
+        observe=observe,
+    )
+    size = (camera.height, camera.width)
+    radiance = found.radiance.reshape(*size, 3)
+    through = found.transmittance.reshape(*size, -1)  # (H, W, 1 or 3)
+    if haze is not None:
+        clear = float(clearness(haze, middle_of(cloud)[None], camera)[0])
+        radiance = clear * radiance + (1.0 - clear) * (1.0 - through) * haze.color
+    alpha = None
+    if behind is None:
+        alpha = np.clip(1.0 - through.mean(axis=2), 0.0, 1.0)
+    else:
+        radiance = radiance + through * behind
+    clock.stop("march")
+    return Picture(radiance, alpha, found.skipped, seconds, (ONCE, *found.notes))
+
+
+def middle_of(cloud: VoxelGrid) -> Array:
+    """Give the middle of a cloud's box, shape (3,)."""
+    return 0.5 * cloud.lower + 0.5 * cloud.upper
