@@ -47,6 +47,7 @@ from refcloud.transport.windows import (
 
 Values = NDArray[Any]  # float32 or float64
 Pair = tuple[float, float]  # along v and along u
+FETCHED = 8  # slices at a time: half a megabyte of 128 x 128, within a cache
 
 
 @dataclass(frozen=True)
@@ -114,13 +115,12 @@ def sheared_depths(
     room = np.empty((s + 2, (V + 2 * PAD) * stride), out.dtype)
     columns = Columns(V, U, s, slopes, values, {}, room)
     for m, mixed in enumerate(mixed_slices(slabs, s, filled, out.dtype)):
-        step = 0.5 if m == 0 else 1.0  # the box begins half a step before slice 0
-        occupied = mixed.any()
-        if not occupied and not columns.entered:
+        if mixed is None and not columns.entered:
             out[m] = 0.0  # nothing between here and the sun
             continue
+        step = 0.5 if m == 0 else 1.0  # the box begins half a step before slice 0
         enter(columns, m - 0.5 * step)
-        if occupied:
+        if mixed is not None:
             place(columns, mixed, m - 0.5 * step, step, length / s, filled)
         enter(columns, m)
         kept = lengthen(columns, m) if filled else []
@@ -137,36 +137,44 @@ def border_is_filled(slabs: Values) -> bool:
 
 def mixed_slices(
     slabs: Values, scale: int, filled: bool, dtype: np.dtype
-) -> Iterator[Values]:
-    """Give, for every step of a ray, the field in its middle (step 1).
+) -> Iterator[Values | None]:
+    """Give, for every step of a ray, the field in its middle (step 1); None if empty.
 
     Each is a row of numbers, PAD cells wider than a slice on every side; what lies
     there is as dense as the border, since the field is so for half a cell.
     """
     K, V, U = slabs.shape
-    padded = np.zeros((2, V + 2 * PAD, U + 2 * PAD), dtype)
-    rows = padded.reshape(2, -1)
+    # Slices are fetched several at a time: they may lie scattered in memory.
+    block = np.zeros((FETCHED + 1, V + 2 * PAD, U + 2 * PAD), dtype)
+    rows = block.reshape(len(block), -1)
     mixed = np.empty_like(rows[0])
-    half = mixed.dtype.type(0.5)
-
-    def take(k: int) -> None:
-        slab = padded[k % 2]
-        slab[PAD:-PAD, PAD:-PAD] = slabs[k]
-        if filled:
-            slab[:PAD], slab[-PAD:] = slab[PAD], slab[-PAD - 1]
-            slab[:, :PAD] = slab[:, PAD : PAD + 1]
-            slab[:, -PAD:] = slab[:, -PAD - 1 : -PAD]
-
-    take(0)
-    yield rows[0]  # from the face to the first sample
+    before = False  # whether there is cloud in slice k - 1
     for k in range(K):
-        if scale == 2:
-            yield rows[k % 2]  # slice k lies between its two samples
-        if k + 1 < K:
-            take(k + 1)
-            np.add(rows[0], rows[1], out=mixed)
-            mixed *= half
-            yield mixed
+        n = k % FETCHED + 1
+        if n == 1:
+            block[0] = block[FETCHED]
+            fetch(slabs[k : k + FETCHED], filled, out=block[1:])
+        here = bool(rows[n].max() > 0.0)
+        if k == 0:  # from the face to the first sample
+            yield rows[n] if here else None
+        elif before or here:
+            np.add(rows[n - 1], rows[n], out=mixed)
+            yield np.multiply(mixed, 0.5, out=mixed)
+        else:
+            yield None
+        if scale == 2:  # slice k lies in the middle between its two samples
+            yield rows[n] if here else None
+        before = here
+
+
+def fetch(slabs: Values, filled: bool, out: Values) -> None:
+    """Copy slices between their pads; where the border is filled it goes on there."""
+    out = out[: len(slabs)]
+    out[:, PAD:-PAD, PAD:-PAD] = slabs
+    if filled:
+        for before, after in ((slice(PAD), PAD), (slice(-PAD, None), -PAD - 1)):
+            out[:, before] = out[:, after, None]
+            out[:, :, before] = out[:, :, after, None]
 
 
 def enter(columns: Columns, along: float) -> None:
@@ -240,8 +248,8 @@ def read(columns: Columns, m: int, out: Values) -> None:
                 terms.append((tap.weight, lines[tap.phase][start : start + size]))
             weighted(terms, total[:size], spare)
             # A cubic may fall below 0 beside an edge; no column density does.
-            samples = total[:size].reshape(V, stride)[:, :U]
-            np.maximum(samples, 0.0, out=out[p::s, q::s])
+            samples = np.maximum(total[:size], 0.0, out=total[:size])
+            out[p::s, q::s] = samples.reshape(V, stride)[:, :U]
 
 
 def weighted(terms: list[tuple[float, Values]], out: Values, spare: Values) -> None:

@@ -133,7 +133,8 @@ def sun_depths(
     if main == 0:  # slices across x are scattered in memory: gather them
         slabs, turned = np.ascontiguousarray(slabs), np.empty(turned.shape, dtype)
     # 3. Let the light through.
-    slabs, length = _within_range(slabs, length, np.dtype(dtype))
+    peak = float(grid.density.max())
+    slabs, length = _within_range(slabs, peak, length, np.dtype(dtype))
     sheared_depths(
         slabs, (slopes[0], slopes[1]), length=length, scale=scale, out=turned
     )
@@ -144,10 +145,10 @@ def sun_depths(
 
 
 def _within_range(
-    slabs: Array, length: float, dtype: np.dtype[Any]
+    slabs: Array, peak: float, length: float, dtype: np.dtype[Any]
 ) -> tuple[Array, float]:
     """Move the densities' magnitude into the length where a sum could overflow."""
-    peak, most = float(slabs.max()), float(np.finfo(dtype).max) / (8 * len(slabs))
+    most = float(np.finfo(dtype).max) / (8 * len(slabs))
     if 1.0 / most < peak < most and peak * length < most:
         return slabs, length
     # What is deeper than the type can tell is as deep as it can tell: light is gone.
