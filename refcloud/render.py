@@ -24,6 +24,7 @@ from refcloud.image import Picture
 from refcloud.lighting import Haze, Look, named
 from refcloud.lighting.look import LookName
 from refcloud.march import Mixing
+from refcloud.march.multiple import Scattering
 from refcloud.march_picture import draw_march
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
@@ -55,7 +56,7 @@ def render(
     haze: Haze | None = None,
     look: Look | LookName | None = None,
     method: Method | None = None,
-    scattering: Literal["single"] = "single",
+    scattering: Scattering = "single",
     ambient: Colour | None = None,
     mixing: Mixing | None = None,
     tolerance: Tolerance = 0.0,
@@ -94,7 +95,9 @@ def render(
         "splat" draws balls in two passes, a cloud map as one ball per occupied voxel;
         "march" follows rays. None splats metaballs and marches cloud maps.
     scattering
-        Light that is marched is scattered once.
+        How often light that is marched is scattered: "single" is once, "multiple" is
+        every order, solved first (`refcloud.transport.scattered_light`); or that light,
+        solved before, for another eye.
     ambient
         Radiance that reaches a marched cloud from all sides alike, RGB; None for the
         mean of a clear sky and the ground.
@@ -173,6 +176,7 @@ def render(
             haze=haze,
             ambient=AMBIENT if ambient is None else ambient,
             mixing=mixing,
+            scattering=scattering,
             tolerance=tolerance,
             observe=observe,
         )

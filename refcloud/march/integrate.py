@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 from refcloud.checking import checked
@@ -9,6 +10,7 @@ from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Colour, Observer, Range, Shape, Tolerance
 from refcloud.march.marched import marched
 from refcloud.march.mixing import PHYSICAL, Mixing
+from refcloud.march.multiple import Scattering, marched_multiple
 from refcloud.march.rays import as_rays, shaped
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
@@ -26,9 +28,10 @@ def integrate(
     background: Colour | Annotated[Array, Shape("...", 3), Range(0.0)] | None = None,
     ambient: Colour | None = None,
     mixing: Mixing = PHYSICAL,
+    scattering: Scattering = "single",
     observe: Observer | None = None,
 ) -> tuple[Array, Array]:
-    """Integrate light that is scattered once along any rays.
+    """Integrate scattered light along any rays.
 
     Formula: L = albedo p(cos_theta) E int sigma_t rho exp(-tau_view) exp(-tau_sun) dt
     + albedo ambient (1 - T) + T background, summed over the suns
@@ -54,6 +57,9 @@ def integrate(
         this term holds every order of scattering.
     mixing
         Factors without a counterpart in physics, off by default.
+    scattering
+        "single" counts light that is scattered once; "multiple" solves the rest
+        (`refcloud.transport.scattered_light`); or that light, solved before.
     observe
         Called with (name, value) for each intermediate; "skipped" last.
 
@@ -78,7 +84,10 @@ def integrate(
     (array([[0.4323, 0.4323, 0.4323]]), array([0.3679]))
     """
     rays = as_rays(origins, directions)
-    found = marched(
+    march = marched
+    if scattering != "single":
+        march = partial(marched_multiple, scattering=scattering)
+    found = march(
         cloud,
         rays.origins,
         rays.directions,

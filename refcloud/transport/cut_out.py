@@ -18,7 +18,10 @@ from refcloud.transport.plans import Plan
 from refcloud.transport.sunlight import cell_mean, intercepted
 from refcloud.transport.sweep import step_of
 
-SMALLEST = 4  # voxels along the longest axis that halving leaves
+SMALLEST = 4  # voxels along the longest axis that stages leave
+# Voxels along the longest axis that a plan's finest grid keeps, however thin they are:
+# with half of them shapes are lost, and five times the error.
+ENOUGH = 48
 
 
 def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
@@ -44,7 +47,7 @@ def cut_out(grid: VoxelGrid, plan: Plan, sigma: float) -> tuple[Plan, VoxelGrid,
     most = max(int(np.log2(extent.max() / SMALLEST)), 0)
     thin = float(grid.density.max()) * sigma * float(size.max())
     spare = int(np.log2(plan.depth / thin)) if 0.0 < thin < plan.depth else 0
-    base = min(spare, most)
+    base = min(spare, max(int(np.log2(extent.max() / ENOUGH)), 0))
     stages = tuple(s for s in plan.stages if base + s.halvings <= most)
     room = -extent % 2 ** (base + max(s.halvings for s in stages))
     kept = tuple(slice(a, b) for a, b in zip(first, last, strict=True))

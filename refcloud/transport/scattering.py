@@ -116,7 +116,8 @@ def scattered_light(
         Stages of the solution, or the name of one; None chooses by the tolerance.
     tolerance
         Error of the picture that is allowed, in units of displayed white, against the
-        plan "finest", which 0 chooses.
+        plan "finest", which 0 chooses. "finest" itself is some 0.005 from an unbiased
+        estimate at an optical depth of 0.25 per voxel, 0.02 at 1.25 (relative RMSE).
 
     Returns
     -------
@@ -140,7 +141,7 @@ def scattered_light(
     if isinstance(plan, str):
         plan = PLANS[plan]
     elif plan is None:
-        plan = plan_for(tolerance)
+        plan = plan_for(tolerance, suns, medium)
     refuse_unbounded(grid, medium)
     above, below = (DARK if c is None else np.asarray(c) for c in (sky, ground))
     # 1. Cut the cloud out, and let the suns shine on it.
@@ -207,11 +208,23 @@ def source_toward(light: ScatteredLight, direction: Vector) -> Array:
     """
     w = unit_vector(direction)
     sources = []
-    for found, moments in zip(light.solutions, light.moments, strict=True):
-        level = found.level
-        Y = harmonics(w, level.directions.degree)[seen(level.scaled)]
-        weights = (level.share * Y).astype(moments.dtype)
+    for kind, terms in enumerate(source_terms(light)):
+        weights = harmonics_toward(light, w, kind).astype(terms.dtype)
         # A cut-off series may dip below 0 where hardly any light is.
-        J = np.tensordot(weights, moments, axes=1)
-        sources.append(np.maximum(J, 0.0))
+        sources.append(np.maximum(np.tensordot(weights, terms, axes=1), 0.0))
     return np.stack([f * sources[k][b] for k, b, f in light.channels], axis=-1)
+
+
+def source_terms(light: ScatteredLight) -> list[NDArray[Any]]:
+    """Give each solution's source as harmonics, a' chi'_l times the moments."""
+    found = []
+    for solution, moments in zip(light.solutions, light.moments, strict=True):
+        share = solution.level.share.astype(moments.dtype)
+        found.append(share[:, None, None, None, None] * moments)
+    return found
+
+
+def harmonics_toward(light: ScatteredLight, directions: Array, kind: int) -> Array:
+    """Evaluate the harmonics that a solution keeps, shape (..., R)."""
+    level = light.solutions[kind].level
+    return harmonics(directions, level.directions.degree)[..., seen(level.scaled)]
