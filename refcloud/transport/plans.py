@@ -76,7 +76,7 @@ PLANS: dict[str, Plan] = {
     "quick": Plan((*START, Stage(50, 0, 1)), depth=0.3),
     "standard": Plan((*START, Stage(26, 0, 2), Stage(50, 0, 1)), depth=0.3),
     "reference": Plan((*START, Stage(50, 0, 60), Stage(128, 0, 1))),
-    "fine": Plan((*START, Stage(50, 0, 60, 2e-4), Stage(128, 0, 4, 2e-4))),
+    "fine": Plan((*START, Stage(50, 0, 60, 2e-4), Stage(128, 0, 60, 2e-4))),
     "finest": Plan(
         (
             Stage(26, 2, 500, 1e-7),

@@ -160,7 +160,8 @@ def test_single_paths_agree_with_the_quadrature() -> None:
     found = trace_paths(
         smooth(8), origins, directions, suns=SUN, medium=medium, paths=400, orders=1
     )
-    lit = found.error[:, 0] > 0.0
+    # Where few paths meet the cloud the error is not known either.
+    lit = exact[:, 0] > 0.05 * exact.max()
     z = (found.radiance - exact)[lit, 0] / found.error[lit, 0]
     assert lit.sum() > 20
     assert abs(z.mean()) < 4.0 / np.sqrt(lit.sum())
