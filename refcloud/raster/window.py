@@ -1,0 +1,238 @@
+"""From the world into the window: cut off in front of the eye, snapped to sub-pixels.
+
+As OpenGL does it: geometry is cut where it comes nearer than the near plane and far
+beside the window, before anything is divided by depth; what is left goes to whole
+multiples of 1/256 pixel. From there on pixels are found in integers, so that no
+rounding decides whether one is drawn.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refcloud.camera import AnyCamera, Camera, axes
+from refcloud.checking import complaint
+from refcloud.conventions import Array, Range
+from refcloud.raster.blending import blended
+from refcloud.raster.framebuffer import CHANNELS, NOTHING, Framebuffer
+
+Places = NDArray[np.int64]  # in sub-pixels, y downward
+
+SUBPIXEL = 256  # 8 bits, what graphics hardware has
+# How far beside the window geometry is cut: no cut shows, and the products of two
+# coordinates stay below 2^63 in every picture of up to 64 megapixels.
+GUARD = 8192.0
+NEAR = 1e-3
+Near = Annotated[float, Range(1e-100, 1e100, "scene units")]
+WORLD = Range(-1e100, 1e100, "scene units")  # squares of such places are numbers
+
+
+def to_camera(camera: AnyCamera, points: Array) -> Array:
+    """Give points in the camera's frame.
+
+    Parameters
+    ----------
+    camera
+        Pinhole or orthographic.
+    points
+        Shape (..., 3), scene units.
+
+    Returns
+    -------
+    Right, up and depth, shape (..., 3).
+    """
+    right, up, back = axes(camera)
+    ahead = points - camera.eye
+    # Without a matrix product: the same bits wherever a point stands in the list.
+    return np.stack(
+        [
+            ahead[..., 0] * axis[0] + ahead[..., 1] * axis[1] + ahead[..., 2] * axis[2]
+            for axis in (right, up, -back)
+        ],
+        axis=-1,
+    )
+
+
+def scale_of(camera: AnyCamera) -> float:
+    """Give pixels per scene unit: at depth 1, or anywhere if orthographic."""
+    if isinstance(camera, Camera):
+        return 0.5 * camera.height / math.tan(0.5 * camera.fov_y)
+    return camera.height / camera.height_of_view
+
+
+def planes_of(camera: AnyCamera, near: float) -> Array:
+    """Give the five planes that cut geometry, the near one first.
+
+    Parameters
+    ----------
+    camera
+        Pinhole or orthographic.
+    near
+        Depth of the near plane, scene units.
+
+    Returns
+    -------
+    Shape (5, 4): a b c d, with a right + b up + c depth + d at least 0 inside.
+    """
+    scale = scale_of(camera)
+    aside, above = 0.5 * camera.width + GUARD, 0.5 * camera.height + GUARD
+    pinhole = isinstance(camera, Camera)
+
+    def side(right: float, up: float, reach: float) -> list[float]:
+        """Limit scale * right or up to reach, times depth for a pinhole."""
+        return [right, up, reach * pinhole, reach * (not pinhole)]
+
+    planes = np.array(
+        [
+            [0.0, 0.0, 1.0, -near],
+            side(scale, 0.0, aside),
+            side(-scale, 0.0, aside),
+            side(0.0, scale, above),
+            side(0.0, -scale, above),
+        ]
+    )
+    # Only signs and shares matter; at most 1, they bring no overflow.
+    return planes / np.abs(planes).max(axis=1, keepdims=True)
+
+
+def cut_line(ends: Array, planes: Array) -> Array | None:
+    """Cut a line by planes.
+
+    Parameters
+    ----------
+    ends
+        Right, up and depth of both ends, shape (2, 3).
+    planes
+        Shape (K, 4), from `planes_of`.
+
+    Returns
+    -------
+    The ends of what is left, shape (2, 3), or None for nothing.
+    """
+    for plane in planes:
+        inside = ends @ plane[:3] + plane[3]
+        if (inside < 0.0).all():
+            return None
+        for end in (0, 1):
+            if inside[end] < 0.0:
+                ends = ends.copy()
+                ends[end] = _meeting(ends[1 - end], ends[end], inside[[1 - end, end]])
+    return ends
+
+
+def cut_polygon(corners: list[Array], planes: Array) -> list[Array]:
+    """Cut a convex polygon by planes: corners inside stay, edges end where they cross.
+
+    Parameters
+    ----------
+    corners
+        Right, up and depth of each, shape (3,); in order around the polygon.
+    planes
+        Shape (K, 4), from `planes_of`.
+
+    Returns
+    -------
+    Corners of what is left, in the same order; none where nothing is.
+    """
+    for plane in planes:
+        inside = [float(corner @ plane[:3] + plane[3]) for corner in corners]
+        kept: list[Array] = []
+        for k, corner in enumerate(corners):
+            before = k - 1
+            if (inside[before] < 0.0) != (inside[k] < 0.0):
+                # From the inner end on, whichever comes first: two triangles that share
+                # this edge cut it at the same place.
+                a, b = (k, before) if inside[before] < 0.0 else (before, k)
+                signed = np.array([inside[a], inside[b]])
+                kept.append(_meeting(corners[a], corners[b], signed))
+            if inside[k] >= 0.0:
+                kept.append(corner)
+        corners = kept
+    return corners
+
+
+def _meeting(inner: Array, outer: Array, inside: Array) -> Array:
+    """Give the place between two points where a plane lies."""
+    return inner + (inside[0] / (inside[0] - inside[1])) * (outer - inner)
+
+
+def snapped(camera: AnyCamera, place: Array, near: float) -> Places:
+    """Put a place of the camera's frame into the window, on whole sub-pixels.
+
+    Parameters
+    ----------
+    camera
+        Pinhole or orthographic.
+    place
+        Right, up and depth, shape (..., 3), within the planes.
+    near
+        Depth of the near plane, scene units.
+
+    Returns
+    -------
+    x and y from the left and the top edge, shape (..., 2), sub-pixels.
+    """
+    scale = np.full(place.shape[:-1], scale_of(camera))
+    if isinstance(camera, Camera):
+        # Rounding may have left a cut end a last bit before the near plane.
+        scale = scale / np.maximum(place[..., 2], near)
+    middle = 0.5 * np.array([camera.width, camera.height])
+    aside = np.stack([scale * place[..., 0], -scale * place[..., 1]], axis=-1)
+    # Of a line that ends at 1e20 no digit of the cut end is left: hold it in the room.
+    room = middle + (GUARD + 1.0)
+    return to_subpixels(middle + np.clip(aside, -room, room))
+
+
+def to_subpixels(pixels: Array) -> Places:
+    """Round pixels to whole sub-pixels.
+
+    Parameters
+    ----------
+    pixels
+        Any shape.
+
+    Returns
+    -------
+    The same shape; a half goes up.
+    """
+    return np.floor(pixels * SUBPIXEL + 0.5).astype(np.int64)
+
+
+def refuse_other_size(buffer: Framebuffer, camera: AnyCamera) -> None:
+    """Refuse a framebuffer that is not as large as the camera's picture."""
+    size = camera.height, camera.width
+    if buffer.pixels.shape[:2] != size:
+        got = f"shape {buffer.pixels.shape}"
+        expected = f"shape {(*size, CHANNELS)}, the size of the camera's picture"
+        raise ValueError(complaint("buffer", expected, got))
+
+
+def blend_pixels(
+    buffer: Framebuffer,
+    rows: NDArray[np.intp],
+    columns: NDArray[np.intp],
+    color: Array,
+    src_factor: str,
+    dst_factor: str,
+) -> None:
+    """Blend one colour into pixels, none of which comes twice.
+
+    Parameters
+    ----------
+    buffer
+        The framebuffer, written in place.
+    rows, columns
+        Of each pixel.
+    color
+        RGBA, shape (4,).
+    src_factor, dst_factor
+        As `refcloud.raster.blend`.
+    """
+    behind = buffer.pixels[rows, columns]
+    buffer.pixels[rows, columns] = blended(
+        color, behind, src_factor, dst_factor, "FUNC_ADD", NOTHING
+    )
