@@ -17,6 +17,17 @@ SUN = Sun([0.5, 0.8, -0.3], [1.0, 1.0, 1.0])
 FORWARD = Medium(6.0, g=0.6, phase="hg")
 
 
+def ball(n: int) -> VoxelGrid:
+    """Fill a ball whose density voxels hold well, with an empty border."""
+    z, y, x = np.ix_(*[np.linspace(-1.0, 1.0, n)] * 3)
+    return VoxelGrid(
+        np.clip(1.2 - 1.9 * (x * x + y * y + z * z), 0, 1), [0] * 3, [1] * 3
+    )
+
+
+BALL = ball(16)
+
+
 def cloud(n: int = 8, seed: int = 1, *, shape: tuple[int, int, int] | None = None):
     """Hash a lumpy ball with an empty border, in a box of edge 1."""
     D, H, W = shape or (n, n, n)

@@ -35,6 +35,8 @@ class Contender:
         What the result is compared with, None where its numbers are its own.
     rival
         Whether ratios of the task are taken to it.
+    apart
+        How a result's error is counted; None for the largest distance.
     """
 
     task: str
@@ -43,6 +45,7 @@ class Contender:
     work: Callable[[], Any]
     reference: Callable[[], Any] | None = None
     rival: bool = False
+    apart: Callable[[Any, Any], float] | None = None
 
 
 @dataclass(frozen=True)
@@ -107,6 +110,8 @@ def _ratio(rival: float | None, timing: Timing) -> float | None:
 def _error(contender: Contender) -> float | None:
     if contender.reference is None:
         return None
+    if contender.apart is not None:
+        return contender.apart(contender.work(), contender.reference())
     exact = np.asarray(contender.reference())
     return float(np.abs(np.asarray(contender.work()) - exact).max())
 

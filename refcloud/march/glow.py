@@ -104,7 +104,7 @@ def glow(
         chunk = max(1, int(SAMPLES / (across / apart + 1.0)))
         for start in range(0, len(rays), chunk):
             part = rays[start : start + chunk]
-            samples = _by_steps(grid, origins[part], directions[part], apart)
+            samples = by_steps(grid, origins[part], directions[part], apart)
             shares = [weights[start : start + chunk]] * len(terms)
             radiance[part] = _sum(light, samples, terms, shares, len(part), thin=False)
     return radiance
@@ -163,7 +163,7 @@ def _between_centres(
     return Samples(ray, points.reshape(-1, 3), column.reshape(-1), amount.reshape(-1))
 
 
-def _by_steps(
+def by_steps(
     grid: Lattice, origins: Array, directions: Array, apart: float
 ) -> Samples:
     """Take a sample in every stretch of a length, where there is density."""

@@ -118,3 +118,14 @@ def smooth_phase(moments: Sequence[float], cos_theta: float) -> float:
         (2 * l + 1) * chi * legendre(l, cos_theta) for l, chi in enumerate(moments)
     )
     return sum(terms) / WHOLE_SPHERE
+
+
+def beer_powder(tau: float) -> float:
+    """Dim sunlight as games do: 2 e^-tau (1 - e^-2tau)."""
+    return 2.0 * math.exp(-tau) * (1.0 - math.exp(-2.0 * tau))
+
+
+def forward_depth(tau: float, kappa: float) -> float:
+    """Give the depth that a voxel seems to have where it hands light on (eq 27)."""
+    passed = math.exp(-tau) + min(kappa * tau, -math.expm1(-tau))
+    return -math.log(min(passed, 1.0))

@@ -1,5 +1,6 @@
 """Light inside a voxel grid: on its way to the sun, and scattered many times."""
 
+from refcloud.transport.approximations import beer_powder, forward_depth
 from refcloud.transport.column import column_density
 from refcloud.transport.delta_m import (
     ScaledMedium,
@@ -7,6 +8,7 @@ from refcloud.transport.delta_m import (
     legendre_moments,
     smooth_phase,
 )
+from refcloud.transport.diffusion import Diffused, diffuse_source, diffused_light
 from refcloud.transport.directions import Directions, sphere_directions
 from refcloud.transport.harmonics import harmonics
 from refcloud.transport.paths import PathEstimate, trace_paths
@@ -22,6 +24,7 @@ from refcloud.transport.sweep import sweep
 
 __all__ = [
     "PLANS",
+    "Diffused",
     "Directions",
     "LightVolume",
     "PathEstimate",
@@ -29,9 +32,13 @@ __all__ = [
     "ScaledMedium",
     "ScatteredLight",
     "Stage",
+    "beer_powder",
     "cell_mean",
     "column_density",
     "delta_m",
+    "diffuse_source",
+    "diffused_light",
+    "forward_depth",
     "harmonics",
     "intercepted",
     "legendre_moments",

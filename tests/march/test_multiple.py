@@ -6,17 +6,15 @@ import dataclasses
 
 import numpy as np
 import pytest
-from small_lights import FORWARD, SUN, cloud
+from small_lights import FORWARD, SUN, ball, cloud
 
 import refcloud as rc
 from refcloud.camera import OrthographicCamera, rays
-from refcloud.cloudmap import VoxelGrid
 from refcloud.march import integrate
 from refcloud.optics import Medium, Sun
 from refcloud.transport import Plan, Stage, scattered_light, trace_paths
 
 BRIGHT = Sun([0.5, 0.8, -0.3])
-FINE = {"quick": 1.0, "fine": 0.0}
 
 
 def view(n: int, toward=(0.2, 0.1, 1.0)) -> tuple[np.ndarray, np.ndarray]:
@@ -27,12 +25,6 @@ def view(n: int, toward=(0.2, 0.1, 1.0)) -> tuple[np.ndarray, np.ndarray]:
     )
     origins, directions = rays(camera)
     return origins.reshape(-1, 3), directions.reshape(-1, 3)
-
-
-def smooth(n: int) -> VoxelGrid:
-    """A ball whose density voxels hold well, and an empty border."""
-    r2 = sum(np.square(np.ix_(*[np.linspace(-1, 1, n)] * 3)[a]) for a in range(3))
-    return VoxelGrid(np.clip(1.2 - 1.9 * r2, 0.0, 1.0), [0] * 3, [1] * 3)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 0.05])
@@ -116,9 +108,9 @@ def test_factors_without_physics_are_refused() -> None:
 @pytest.mark.parametrize("tolerance", [0.05, 0.01])
 def test_a_tolerance_is_kept_against_the_finest_light(tolerance: float) -> None:
     how = {"suns": BRIGHT, "medium": Medium(6.0, phase="rayleigh")}
-    exact, _ = integrate(smooth(12), *view(16), scattering="multiple", **how)
+    exact, _ = integrate(ball(12), *view(16), scattering="multiple", **how)
     found, _ = integrate(
-        smooth(12), *view(16), scattering="multiple", tolerance=tolerance, **how
+        ball(12), *view(16), scattering="multiple", tolerance=tolerance, **how
     )
     assert np.abs(found - exact).max() <= tolerance
     assert np.abs(found - exact).max() > 0.0
@@ -130,7 +122,7 @@ def test_swapping_sun_and_eye_changes_little() -> None:
     sums = []
     for sun, eye in ((a, b), (b, a)):
         L, _ = integrate(
-            smooth(16),
+            ball(16),
             *view(48, tuple(eye / np.sqrt(eye @ eye))),
             suns=Sun(sun),
             medium=Medium(6.0, g=0.5, phase="hg"),
@@ -156,9 +148,9 @@ def test_pictures_are_finite_and_never_negative(sigma_t: float) -> None:
 def test_single_paths_agree_with_the_quadrature() -> None:
     origins, directions = view(12)
     medium = Medium(6.0, 0.9, 0.6, "hg")
-    exact, _ = integrate(smooth(8), origins, directions, suns=SUN, medium=medium)
+    exact, _ = integrate(ball(8), origins, directions, suns=SUN, medium=medium)
     found = trace_paths(
-        smooth(8), origins, directions, suns=SUN, medium=medium, paths=400, orders=1
+        ball(8), origins, directions, suns=SUN, medium=medium, paths=400, orders=1
     )
     # Where few paths meet the cloud the error is not known either.
     lit = exact[:, 0] > 0.05 * exact.max()
@@ -174,7 +166,7 @@ BIAS = 0.02
 
 @pytest.mark.parametrize("g", [0.0, 0.6])
 def test_solved_light_agrees_with_random_paths(g: float) -> None:
-    grid, (origins, directions) = smooth(16), view(10)
+    grid, (origins, directions) = ball(16), view(10)
     medium = Medium(6.0, g=g, phase="hg")
     found = trace_paths(
         grid, origins, directions, suns=BRIGHT, medium=medium, paths=600, seed=3

@@ -16,6 +16,10 @@ from twins.optics import PHASES, cosines, shares
 from twins.transport import directions as toward
 
 WITHOUT = {
+    "refcloud.transport.diffusion.diffused_light": "solves a linear system; its balance"
+    " is tested in tests/transport/test_cheap_ways.py",
+    "refcloud.transport.diffusion.diffuse_source": "two terms of the field that it is"
+    " given; tested in tests/transport/test_cheap_ways.py",
     "refcloud.transport.scattering.scattered_light": "iterates twins; equal to a plain"
     " iteration of them in tests/transport/test_scattering.py",
     "refcloud.transport.scattering.source_toward": "a sum over the twin of harmonics;"
@@ -207,3 +211,27 @@ def trace_paths(draw: Draw):
         seed,
     )
     return [found.radiance[0, 1], found.error[0, 1]], [mean, error]
+
+
+@twin(
+    array.beer_powder,
+    plain.beer_powder,
+    tolerance=1e-15,
+    why="worst seen 2e-16: 1 - e^-2t cancels in the plain form",
+)
+def beer_powder(draw: Draw):
+    depths = draw(st.lists(st.floats(0.0, 40.0), min_size=1, max_size=4))
+    return array.beer_powder(depths), [plain.beer_powder(t) for t in depths]
+
+
+@twin(
+    array.forward_depth,
+    plain.forward_depth,
+    tolerance=4e-14,
+    why="the plain form takes the logarithm of a sum that is near 1 for thin voxels",
+)
+def forward_depth(draw: Draw):
+    depths = draw(st.lists(st.floats(0.0, 30.0), min_size=1, max_size=4))
+    kappa = draw(shares)
+    expected = [plain.forward_depth(t, kappa) for t in depths]
+    return array.forward_depth(depths, kappa=kappa), expected
