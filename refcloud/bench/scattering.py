@@ -104,7 +104,7 @@ def plans(
             1,
             functools.partial(scattered_light, grid, SUN, medium=medium, plan=plan),
             truth,
-            apart=error,
+            distance=error,
         )
         for name, plan in PLANS.items()
         if name != "finest"
@@ -154,7 +154,7 @@ def solutions(n: int) -> list[Contender]:
                     1,
                     functools.partial(way, grid, *view(pixels_for(n)), SUN, medium),
                     exact,
-                    apart=_picture_apart,
+                    distance=_picture_apart,
                 )
             )
     return entered

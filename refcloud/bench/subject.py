@@ -100,7 +100,7 @@ def table(subject: Subject, rows: list[Row]) -> str:
         if rate:
             line.append(f"{rate[1] / timing.median:.1f}" if timing.median > 0 else "-")
         line.append("-" if row.ratio is None else f"{row.ratio:.1f}")
-        line.append("-" if row.error is None else f"{row.error:.1g}")
+        line.append("-" if row.error is None else f"{row.error:.2g}")
         lines.append(line)
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
     text = [

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from refcloud.bench.march import MARCH
 from refcloud.bench.noise import NOISE
+from refcloud.bench.scattering import SCATTERING
 from refcloud.bench.subject import Subject
 
-SUBJECTS: dict[str, Subject] = {subject.name: subject for subject in (NOISE,)}
+SUBJECTS: dict[str, Subject] = {
+    subject.name: subject for subject in (MARCH, NOISE, SCATTERING)
+}

@@ -35,8 +35,8 @@ class Contender:
         What the result is compared with, None where its numbers are its own.
     rival
         Whether ratios of the task are taken to it.
-    apart
-        How a result's error is counted; None for the largest distance.
+    distance
+        How far a result is from the reference's; None for the largest difference.
     """
 
     task: str
@@ -45,7 +45,7 @@ class Contender:
     work: Callable[[], Any]
     reference: Callable[[], Any] | None = None
     rival: bool = False
-    apart: Callable[[Any, Any], float] | None = None
+    distance: Callable[[Any, Any], float] | None = None
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Row:
     ratio
         How many times faster than the task's rival, None without one.
     error
-        Largest distance from the reference, None without one.
+        Distance from the reference, None without one.
     """
 
     task: str
@@ -110,10 +110,10 @@ def _ratio(rival: float | None, timing: Timing) -> float | None:
 def _error(contender: Contender) -> float | None:
     if contender.reference is None:
         return None
-    if contender.apart is not None:
-        return contender.apart(contender.work(), contender.reference())
-    exact = np.asarray(contender.reference())
-    return float(np.abs(np.asarray(contender.work()) - exact).max())
+    found, exact = np.asarray(contender.work()), np.asarray(contender.reference())
+    if contender.distance is not None:
+        return contender.distance(found, exact)
+    return float(np.abs(found - exact).max())
 
 
 def machine(peers: Iterable[str] = ()) -> str:
