@@ -82,20 +82,21 @@ def picture(grid: VoxelGrid, light: ScatteredLight, medium: Medium) -> Array:
     return L[:, 0]
 
 
-def apart(found: Array, true: Array, noise: float = 0.0) -> float:
-    """Give the relative RMSE, less the noise of the truth."""
+def apart(found: Array, exact: Array) -> float:
+    """Give the relative RMSE, less the noise of the truth, its first number."""
+    noise, true = float(exact[0]), exact[1:]
     raw = float(np.square(found - true).sum() / np.square(true).sum())
     return float(np.sqrt(max(raw - noise * noise, 0.0)))
 
 
 def plans(
-    task: str, n: int, medium: Medium, truth: Callable[[], tuple[Array, float]]
+    task: str, n: int, medium: Medium, truth: Callable[[], Array]
 ) -> list[Contender]:
     """Enter every plan: timed is the solution, its suns and norms with it."""
     grid = lumpy(n)
 
-    def error(light: Any, exact: tuple[Array, float]) -> float:
-        return apart(picture(grid, light, medium), *exact)
+    def error(light: Any, exact: Array) -> float:
+        return apart(picture(grid, light.item(), medium), exact)
 
     return [
         Contender(
@@ -112,23 +113,23 @@ def plans(
 
 
 @functools.cache
-def finest(n: int, sigma: float, g: float) -> tuple[Array, float]:
-    """Draw the benchmark's cloud under its finest light."""
+def finest(n: int, sigma: float, g: float) -> Array:
+    """Draw the benchmark's cloud under its finest light; in front stands no noise."""
     grid, medium = lumpy(n), Medium(sigma, g=g, phase="hg")
     light = scattered_light(grid, SUN, medium=medium, plan="finest")
-    return picture(grid, light, medium), 0.0
+    return np.append(0.0, picture(grid, light, medium))
 
 
 @functools.cache
-def by_paths(n: int, sigma: float, g: float) -> tuple[Array, float]:
-    """Estimate the same picture by random paths; with it its relative noise."""
+def by_paths(n: int, sigma: float, g: float) -> Array:
+    """Estimate the same picture by random paths; in front stands its relative noise."""
     grid, medium = lumpy(n), Medium(sigma, g=g, phase="hg")
     count = PATHS if n >= 48 else QUICK_PATHS
     found = trace_paths(
         grid, *view(pixels_for(n)), suns=SUN, medium=medium, paths=count
     )
     L, error = found.radiance[:, 0], found.error[:, 0]
-    return L, float(np.sqrt(np.square(error).sum() / np.square(L).sum()))
+    return np.append(np.sqrt(np.square(error).sum() / np.square(L).sum()), L)
 
 
 def solutions(n: int) -> list[Contender]:
@@ -154,14 +155,10 @@ def solutions(n: int) -> list[Contender]:
                     1,
                     functools.partial(way, grid, *view(pixels_for(n)), SUN, medium),
                     exact,
-                    distance=_picture_apart,
+                    distance=apart,
                 )
             )
     return entered
-
-
-def _picture_apart(found: Any, exact: tuple[Array, float]) -> float:
-    return apart(found, *exact)
 
 
 def against_paths(n: int) -> list[Contender]:
