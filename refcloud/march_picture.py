@@ -63,6 +63,9 @@ def draw_march(
     clock = Clock(seconds)
     behind = painted(background, camera, suns)
     clock.stop("sky")
+    if haze is not None and behind is not None:
+        # Light and transmittance are mixed after the march: their errors add up.
+        tolerance /= 1.0 + max(float(behind.max()), float(haze.color.max()))
     origins, directions = rays(camera)
     march, notes = marched, (ONCE,)
     if scattering != "single":
@@ -76,7 +79,7 @@ def draw_march(
         ambient=ambient,
         mixing=mixing or Mixing(),
         tolerance=tolerance,
-        camera=camera,
+        background=None if behind is None or haze else behind.reshape(-1, 3),
         observe=observe,
     )
     size = (camera.height, camera.width)
@@ -88,7 +91,7 @@ def draw_march(
     alpha = None
     if behind is None:
         alpha = np.clip(1.0 - through.mean(axis=2), 0.0, 1.0)
-    else:
+    elif haze is not None:
         radiance = radiance + through * behind
     clock.stop("march")
     return Picture(radiance, alpha, found.skipped, seconds, (*notes, *found.notes))

@@ -77,15 +77,24 @@ def slabs(
     -------
     t0 and t1; both `first` where the ray misses.
     """
-    moving = directions != 0.0
-    within = (origins >= lower) & (origins <= upper)
-    # A ray along the slab is in it everywhere or nowhere: no division, so no 0 / 0.
-    speed = np.where(moving, directions, 1.0)
-    with np.errstate(over="ignore"):  # a face out of reach is at infinity
-        a, b = (lower - origins) / speed, (upper - origins) / speed
-    near = np.where(moving, np.minimum(a, b), np.where(within, -np.inf, np.inf))
-    far = np.where(moving, np.maximum(a, b), np.where(within, np.inf, -np.inf))
-    t0 = np.maximum(near.max(axis=-1), first)
-    t1 = far.min(axis=-1)
-    hits = t1 > t0
-    return np.where(hits, t0, first), np.where(hits, t1, first)
+    shape = np.broadcast_shapes(origins.shape, directions.shape, lower.shape)[:-1]
+    near, far = np.full(shape, -np.inf), np.full(shape, np.inf)
+    for axis in range(3):
+        o, d = origins[..., axis], directions[..., axis]
+        moving = d != 0.0
+        # A ray along the slab is in it everywhere or nowhere: no division, no 0 / 0.
+        speed = np.where(moving, d, 1.0)
+        with np.errstate(over="ignore"):  # a face out of reach is at infinity
+            a, b = (lower[axis] - o) / speed, (upper[axis] - o) / speed
+        if not moving.all():
+            within = (o >= lower[axis]) & (o <= upper[axis])
+            a = np.where(moving, a, np.where(within, -np.inf, np.inf))
+            b = np.where(moving, b, np.where(within, np.inf, -np.inf))
+            near = np.maximum(near, np.where(moving, np.minimum(a, b), a))
+            far = np.minimum(far, np.where(moving, np.maximum(a, b), b))
+        else:
+            near = np.maximum(near, np.minimum(a, b))
+            far = np.minimum(far, np.maximum(a, b))
+    t0 = np.maximum(near, first)
+    hits = far > t0
+    return np.where(hits, t0, first), np.where(hits, far, first)

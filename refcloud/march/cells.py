@@ -106,6 +106,23 @@ def lattice(grid: VoxelGrid) -> Lattice:
     )
 
 
+def cropped(grid: VoxelGrid) -> VoxelGrid:
+    """Cut a cloud map down to what is occupied, and one empty layer around it."""
+    occupied = grid.density > 0.0
+    size, lower, upper = cell_size(grid), grid.lower.copy(), grid.upper.copy()
+    box = [slice(None)] * 3
+    for axis, n in enumerate(grid.density.shape[::-1]):
+        across = tuple(k for k in range(3) if k != 2 - axis)
+        where = np.flatnonzero(occupied.any(axis=across))
+        if not len(where):
+            return grid
+        first, last = max(where[0] - 1, 0), min(where[-1] + 2, n)
+        box[2 - axis] = slice(first, last)
+        lower[axis] += first * size[axis]
+        upper[axis] -= (n - last) * size[axis]
+    return VoxelGrid(grid.density[tuple(box)], lower, upper)
+
+
 def spaces_around(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Mark the spaces between centres that touch a marked centre.
 

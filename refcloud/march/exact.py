@@ -13,11 +13,17 @@ import numpy as np
 from refcloud.conventions import Array
 from refcloud.march.cells import Lattice, Numbers, Pieces, cut, density_at, most_rays
 from refcloud.march.mixing import Mixing
-from refcloud.march.quadrature import before_each, columns, gauss, per_ray
+from refcloud.march.quadrature import (
+    before_each,
+    columns,
+    gauss,
+    integrals_up_to,
+    per_ray,
+)
 from refcloud.march.steps import reaching
 from refcloud.optics import Medium, Sun
 
-POINTS, WEIGHTS, UP_TO = gauss(4)
+POINTS, WEIGHTS = gauss(4)
 # Optical depth of a piece: four points integrate exp(-2 tau) over it, which is light
 # that comes and goes the same way, to 3e-10.
 THICKEST = 0.5
@@ -34,6 +40,8 @@ def exact(
     lit: Array,
     medium: Medium,
     mixing: Mixing,
+    least: float = 0.0,
+    points: int = 4,
 ) -> tuple[Array, Array]:
     """Integrate rays, unchecked.
 
@@ -47,6 +55,10 @@ def exact(
         The lights, and what each sends along each ray, shape (S, N, 3).
     medium, mixing
         Extinction, and factors on optical depths.
+    least
+        Transmittance behind which nothing need be looked for.
+    points
+        Of a piece at which light is looked for: 4, or fewer where that does.
 
     Returns
     -------
@@ -58,7 +70,15 @@ def exact(
     for start in range(0, len(origins), most):
         part = slice(start, start + most)
         radiance[part], column[part] = _some(
-            grid, origins[part], directions[part], suns, lit[:, part], medium, mixing
+            grid,
+            origins[part],
+            directions[part],
+            suns,
+            lit[:, part],
+            medium,
+            mixing,
+            least,
+            points,
         )
     return radiance, column
 
@@ -71,6 +91,8 @@ def _some(
     lit: Array,
     medium: Medium,
     mixing: Mixing,
+    least: float,
+    points: int,
 ) -> tuple[Array, Array]:
     count = len(origins)
     sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
@@ -86,21 +108,25 @@ def _some(
     clearest = float(eyeward.min(initial=np.inf))
     brightest = max(float(lit.max(initial=1.0)), 1.0)
     deepest = DEEPEST + np.log(brightest)
+    if least > 0.0:
+        deepest = min(deepest, -np.log(least))
     seen = np.flatnonzero(clearest * before < deepest)
     pieces, before, mass = taken(pieces, seen), before[seen], mass[seen]
     pieces, before = thinner(pieces, before, mass, float(eyeward.max()), deepest)
 
     # 2. The light that reaches each point from the eye's side and from the suns'.
-    rho = density_at(pieces, POINTS)  # (P, 4)
-    near = before[:, None] + pieces.length[:, None] * (rho @ UP_TO.T)
-    amount = rho * (pieces.length[:, None] * WEIGHTS)
-    t = pieces.start[:, None] + pieces.length[:, None] * POINTS
-    points = origins[pieces.ray, None] + t[..., None] * directions[pieces.ray, None]
+    shares, weights = gauss(points)
+    up_to = density_at(pieces, POINTS) @ integrals_up_to(shares, POINTS).T
+    length = pieces.length[:, None]
+    near = before[:, None] + length * up_to
+    amount = density_at(pieces, shares) * (length * weights)  # (P, points)
+    t = pieces.start[:, None] + length * shares
+    places = origins[pieces.ray, None] + t[..., None] * directions[pieces.ray, None]
     radiance = np.zeros((count, 3))
     for sun, source in zip(suns, lit, strict=True):
         if not source.any():
             continue
-        far = columns(grid, points.reshape(-1, 3), sun.direction).reshape(t.shape)
+        far = columns(grid, places.reshape(-1, 3), sun.direction).reshape(t.shape)
         for channel, sigma in enumerate(sigma_t):
             shown = np.exp(-eyeward[channel] * near) * reaching(sigma * far, mixing)
             scattered = sigma * (amount * shown).sum(axis=1)
@@ -147,8 +173,8 @@ def thinner(
         return pieces, before
     # 1. Into how many, and how many of those may show.
     parts = np.ceil(np.maximum(tau / THICKEST, 1.0))
-    shown = np.minimum(parts, np.ceil((deepest - rate * before) / tau * parts))
-    shown = np.maximum(shown, 1.0).astype(np.intp)
+    left = (deepest - rate * before) * parts / np.maximum(tau, THICKEST)
+    shown = np.maximum(np.minimum(parts, np.ceil(left)), 1.0).astype(np.intp)
     parent = np.repeat(np.arange(len(tau)), shown)
     number = np.arange(len(parent)) - np.repeat(np.cumsum(shown) - shown, shown)
 

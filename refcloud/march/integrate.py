@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated
 
+import numpy as np
+
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Colour, Observer, Range, Shape, Tolerance
@@ -84,6 +86,13 @@ def integrate(
     (array([[0.4323, 0.4323, 0.4323]]), array([0.3679]))
     """
     rays = as_rays(origins, directions)
+    behind = None
+    if background is not None:
+        if background.shape not in ((3,), (*rays.shape, 3)):
+            expected = f"shape (3,) or {(*rays.shape, 3)}, that of the rays"
+            got = f"shape {background.shape}"
+            raise ValueError(complaint("background", expected, got))
+        behind = np.broadcast_to(background, (*rays.shape, 3)).reshape(-1, 3)
     march = marched
     if scattering != "single":
         march = partial(marched_multiple, scattering=scattering)
@@ -96,16 +105,9 @@ def integrate(
         ambient=ambient,
         mixing=mixing,
         tolerance=tolerance,
+        background=behind,
         observe=observe,
     )
     if observe is not None:
         observe("skipped", found.skipped)
-    through = found.transmittance
-    radiance, transmittance = shaped(found.radiance, through, rays, medium)
-    if background is not None:
-        if background.shape not in ((3,), radiance.shape):
-            expected = f"shape (3,) or {radiance.shape}, that of the rays"
-            got = f"shape {background.shape}"
-            raise ValueError(complaint("background", expected, got))
-        radiance += through.reshape((*rays.shape, -1)) * background
-    return radiance, transmittance
+    return shaped(found.radiance, found.transmittance, rays, medium)

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.march.cells import lattice
-from refcloud.march.exact import exact
+from refcloud.march.certified import Task, to_tolerance
 from refcloud.march.light import sources
 from refcloud.march.mixing import Mixing
 from refcloud.optics import Medium, Sun
@@ -28,7 +27,7 @@ class Marched:
     Attributes
     ----------
     radiance
-        Shape (N, 3).
+        Shape (N, 3); with what lies behind, where there is such.
     transmittance
         Shape (N, 1), or (N, 3) where sigma_t is RGB.
     skipped, notes
@@ -51,7 +50,7 @@ def marched(
     ambient: Array | None,
     mixing: Mixing,
     tolerance: float,
-    camera: AnyCamera | None = None,
+    background: Array | None = None,
     observe: Observer | None = None,
 ) -> Marched:
     """March rays, unchecked: the inner form of `integrate`.
@@ -64,23 +63,32 @@ def marched(
         Shape (N, 3) each, scene units; unit vectors.
     suns, medium, ambient, mixing, tolerance, observe
         As `integrate`.
-    camera
-        Whose pixels the rays are, row by row; None for any rays.
+    background
+        What lies behind each ray, shape (N, 3); None for nothing.
 
     Returns
     -------
     What was found.
     """
     refuse_unbounded(cloud, medium)
-    lit = sources(suns, medium, directions=directions)
-    radiance, column = exact(
-        lattice(cloud), origins, directions, suns, lit, medium, mixing
+    task = Task(
+        cloud,
+        lattice(cloud),
+        origins,
+        directions,
+        suns,
+        sources(suns, medium, directions=directions),
+        medium,
+        mixing,
+        np.zeros(3) if ambient is None else ambient,
+        background,
     )
-    factor = mixing.light_absorption_through_cloud * np.atleast_1d(medium.sigma_t)
-    tau = column[:, None] * factor
-    if ambient is not None:
-        radiance += medium.albedo_rgb * ambient * -np.expm1(-tau)
-    return Marched(radiance, np.exp(-tau), (), steep_note(cloud, medium))
+    if tolerance > 0.0:
+        radiance, column, rows, notes = to_tolerance(task, tolerance, observe)
+    else:
+        (radiance, column), rows, notes = task.exact(), (), ()
+    seen, through = task.seen(radiance, column)
+    return Marched(seen, through, rows, notes + steep_note(cloud, medium))
 
 
 def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:

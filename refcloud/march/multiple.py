@@ -7,7 +7,6 @@ from typing import Literal
 
 import numpy as np
 
-from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer
 from refcloud.march.glow import glow
@@ -31,7 +30,7 @@ def marched_multiple(
     ambient: Array | None,
     mixing: Mixing = PHYSICAL,
     tolerance: float,
-    camera: AnyCamera | None = None,
+    background: Array | None = None,
     observe: Observer | None = None,
 ) -> Marched:
     """March rays through solved light, unchecked: the inner form of `integrate`.
@@ -45,7 +44,7 @@ def marched_multiple(
         As `marched`.
     scattering
         "multiple", or light that was solved before for this cloud.
-    suns, medium, ambient, mixing, tolerance, camera, observe
+    suns, medium, ambient, mixing, tolerance, background, observe
         As `marched`; half of the tolerance goes to the solution.
 
     Returns
@@ -78,7 +77,6 @@ def marched_multiple(
         ambient=None,
         mixing=mixing,
         tolerance=0.5 * tolerance,
-        camera=camera,
         observe=observe,
     )
     # 2. Light that was scattered more often.
@@ -87,6 +85,8 @@ def marched_multiple(
     through = found.transmittance ** (kept[:1] if grey else kept)
     if ambient is not None:
         radiance = radiance + (found.transmittance - through) * ambient
+    if background is not None:
+        radiance = radiance + through * background
     if np.ndim(medium.sigma_t) == 0:
         through = through[:, :1]
     notes = found.notes

@@ -12,26 +12,34 @@ from refcloud.march.cells import Lattice, Numbers, cut, density_at, lattice, mos
 PAIR = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
 
 
-def gauss(count: int) -> tuple[Array, Array, Array]:
-    """Give Gauss-Legendre points on [0, 1], their weights, and integrals up to each.
+def gauss(count: int) -> tuple[Array, Array]:
+    """Give Gauss-Legendre points on [0, 1] and their weights.
+
+    K of them integrate polynomials up to degree 2 K - 1 exactly.
+    """
+    points, weights = np.polynomial.legendre.leggauss(count)
+    return 0.5 + 0.5 * points, 0.5 * weights
+
+
+def integrals_up_to(ends: Array, points: Array) -> Array:
+    """Give integrals from 0 to some ends, as weights of values at some points.
 
     Parameters
     ----------
-    count
-        K, number of points: polynomials up to degree 2 K - 1 are integrated exactly,
-        and those up to K - 1 are known from their values at the points.
+    ends
+        Shape (E,), in [0, 1].
+    points
+        K of them, shape (K,): polynomials up to degree K - 1 are integrated exactly.
 
     Returns
     -------
-    Points (K,), weights (K,), and (K, K): row i times the values at the points is the
-    integral from 0 to point i.
+    Shape (E, K).
     """
-    points, weights = np.polynomial.legendre.leggauss(count)
-    points, weights = 0.5 + 0.5 * points, 0.5 * weights
-    powers = points[:, None] ** np.arange(count)  # values to coefficients: its inverse
-    primitives = points[:, None] ** np.arange(1, count + 1) / np.arange(1, count + 1)
-    up_to = np.linalg.solve(powers.T, primitives.T).T
-    return points, weights, np.asarray(up_to, dtype=np.float64)
+    degrees = np.arange(len(points))
+    values = points[:, None] ** degrees  # of each power at each point
+    primitives = ends[:, None] ** (degrees + 1) / (degrees + 1)
+    found = np.linalg.solve(values.T, primitives.T).T
+    return np.asarray(found, dtype=np.float64)
 
 
 def columns(grid: Lattice, origins: Array, directions: Array) -> Array:

@@ -6,9 +6,10 @@ This is the definition that a student can trace. It takes every sample, empty or
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid, trilinear
@@ -174,7 +175,7 @@ def _marched(
     return L, T
 
 
-def reaching(tau: Array, mixing: Mixing) -> Array:
+def reaching(tau: NDArray[Any], mixing: Mixing) -> NDArray[Any]:
     """Give the share of a sun's light that an optical depth lets through, unchecked.
 
     Parameters
