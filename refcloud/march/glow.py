@@ -21,13 +21,14 @@ from refcloud.cloudmap.sample import clamped_trilinear
 from refcloud.conventions import Array
 from refcloud.march.box import slabs
 from refcloud.march.cells import Lattice, cut, density_at, lattice, most_rays
-from refcloud.march.exact import POINTS, UP_TO, WEIGHTS, taken, thinner
-from refcloud.march.quadrature import before_each
+from refcloud.march.exact import POINTS, WEIGHTS, taken, thinner
+from refcloud.march.quadrature import before_each, integrals_up_to
 from refcloud.transport import ScatteredLight
 from refcloud.transport.scattering import harmonics_toward, source_terms
 
 Numbers = NDArray[Any]
 
+UP_TO = integrals_up_to(POINTS, POINTS)
 STRIDE = 0.5  # of a voxel's shortest edge, between samples
 SAMPLES = 1 << 19  # at a time: some 100 MB of temporaries
 DEEPEST = 16.0  # optical depth behind which less than 1e-7 shows
@@ -163,9 +164,7 @@ def _between_centres(
     return Samples(ray, points.reshape(-1, 3), column.reshape(-1), amount.reshape(-1))
 
 
-def by_steps(
-    grid: Lattice, origins: Array, directions: Array, apart: float
-) -> Samples:
+def by_steps(grid: Lattice, origins: Array, directions: Array, apart: float) -> Samples:
     """Take a sample in every stretch of a length, where there is density."""
     place, slope = grid.cells_of(origins), directions / grid.size
     t0, t1 = slabs(place, slope, grid.first, grid.last, np.zeros(len(origins)))
