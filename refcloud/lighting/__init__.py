@@ -16,6 +16,7 @@ from refcloud.lighting.octaves import (
 )
 from refcloud.lighting.order import depth_order
 from refcloud.lighting.shining import march_shining
+from refcloud.lighting.solved import lit_by_solution
 from refcloud.lighting.sunward import sunward
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "eyeward",
     "field_value",
     "light_field",
+    "lit_by_solution",
     "lit_share",
     "march_shining",
     "named",
