@@ -69,6 +69,7 @@ PIECES = {
     "R03": "D: Beer's law along a ray",
     "R04": "D: the Henyey-Greenstein phase function",
     "R05": "D: a march to the light at every sample",
+    "R07": "D: the first try, a texture on the box's faces",
     "V04": "M: the map of voxels",
     "V05": "M: clouds as united ellipsoid volumes",
     "V09": "D: a texture of noise in a box",

@@ -14,7 +14,7 @@ from refcloud.raster import framebuffer, splat
 from refcloud.scenes import SCENES, Model, View
 
 FIXTURES = Path(__file__).parent / "fixtures"
-VIEW = View(192, 144)
+VIEW, SMALL_VIEW = View(192, 144), View(128, 96)
 
 
 def blend_fan() -> Picture:
@@ -51,15 +51,23 @@ def fitted(name: str, balls: str) -> Picture:
     return SCENES[name].draw(Model(clouds), VIEW)
 
 
-def unfitted(name: str) -> Picture:
-    """Draw a scene whose balls come straight from the noise."""
+def unfitted(name: str, view: View = VIEW) -> Picture:
+    """Draw a scene whose clouds come straight from the noise."""
     scene = SCENES[name]
-    return scene.draw(scene.model(), VIEW)
+    return scene.draw(scene.model(), view)
 
 
 GOLDEN: dict[str, Callable[[], Picture]] = {
     "blend-fan": blend_fan,
     "cumulus": partial(fitted, "cumulus", "cumulus"),
+    "demand": partial(unfitted, "demand"),
+    **{
+        f"demand-{name}": partial(unfitted, f"demand-{name}", SMALL_VIEW)
+        for name in (
+            *("worley", "worley-inverted", "cells", "perlin", "sky"),
+            *("box", "faces", "quad", "lit", "background"),
+        )
+    },
     "man-04": partial(unfitted, "man-04"),
     "man-08": partial(fitted, "man-08", "man-08"),
     "man-09": partial(fitted, "man-09", "man-09"),

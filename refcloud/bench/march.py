@@ -32,9 +32,9 @@ from refcloud.transport import LightVolume, column_density, sun_depths
 WIDTH, HEIGHT = 512, 384
 EVERY = 8  # pixels along rows and along columns between those that are compared
 SIGMA_T = 8.0  # an eighth per voxel of 128 in two units
-SUN = Sun([-0.5, 0.7, 0.4])
-BACKLIGHT = Sun([-0.4, -0.1, -1.0])
-EYE = (1.5, 1.0, 3.2)
+SUN = Sun(np.array([-0.5, 0.7, 0.4]))
+BACKLIGHT = Sun(np.array([-0.4, -0.1, -1.0]))
+EYE = np.array([1.5, 1.0, 3.2])
 FOV_Y = math.radians(30.0)
 FRAME = WIDTH * HEIGHT
 
@@ -124,8 +124,8 @@ def pictures(size: int) -> list[Contender]:
         )[0][:, 0]
 
     def sliced(side: int | None, depths: Any) -> Array:
-        scale = depths if isinstance(depths, int) else 1
         if isinstance(depths, int):
+            scale: Any = depths
             toward = of.sun.direction
             depths = [sun_depths(of.grid, toward, scale=scale, dtype="float32")]
         picture = march_slices(

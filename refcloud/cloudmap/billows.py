@@ -18,13 +18,22 @@ from refcloud.cloudmap.connected import largest_part
 from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside
 from refcloud.cloudmap.generate import _cropped, _lattice
 from refcloud.cloudmap.voxels import VoxelGrid
-from refcloud.conventions import Array, Observer, Positive, Range, Seed, Shape
+from refcloud.conventions import (
+    Array,
+    Observer,
+    Positive,
+    Range,
+    Seed,
+    Shape,
+    Skipped,
+)
 from refcloud.noise import octave_frame, worley_grid
 
 OCTAVES, PERSISTENCE = 3, 0.4
 # The sum of octaves lies between these but for 2 of 10,000 places below and none seen
 # above: they become 0 and 1.
 LOWEST, HIGHEST = 0.12, 0.93
+MEAN = 0.48  # of an octave
 SIZES = Range(1e-100, 1e100, "scene units")
 Length = Annotated[float, SIZES]
 Cover = Annotated[float, Range(0.0, 1.0)]
@@ -41,11 +50,12 @@ def lumps_grid(
     z: Annotated[Array, Shape("D")],
     *,
     seed: Seed = 0,
-) -> Array:
+    finest: Annotated[float, Range(0.0)] = 0.0,
+) -> tuple[Array, tuple[Skipped, ...]]:
     """Give the lumps that Worley noise turned over makes, three octaves of them.
 
     Formula: (sum of s^i (1 - min(F1(2^i p), 1)) / sum of s^i - lowest) / (highest -
-    lowest) for i < 3, s = 0.4, cut at 0 and 1
+    lowest) for i < 3, s = 0.4, cut at 0 and 1; of octaves with 2^-i < finest the mean
 
     Parameters
     ----------
@@ -54,26 +64,39 @@ def lumps_grid(
         octave.
     seed
         Which pattern.
+    finest
+        Octaves of smaller cells are left out, in cells of the first; they could not be
+        displayed, and would show as grain.
 
     Returns
     -------
-    Shape (D, H, W), in [0, 1]: 1 in the middle of lumps.
+    Shape (D, H, W), in [0, 1]: 1 in the middle of lumps. And what was left out.
 
-    Source: document D (N26, N28), in octaves; an extension.
+    Source: document D (N26, N28), in octaves; paper M (N16); an extension.
 
     Examples
     --------
-    >>> lumps_grid([0.0, 0.5], [0.0], [0.0], seed=7).shape
+    >>> lumps_grid([0.0, 0.5], [0.0], [0.0], seed=7)[0].shape
     (1, 1, 2)
     """
     total = np.zeros((len(z), len(y), len(x)))
     weights = PERSISTENCE ** np.arange(OCTAVES)
-    for i, weight in enumerate(weights / weights.sum()):
+    weights /= weights.sum()
+    fine = [i for i in range(OCTAVES) if 2.0**-i < finest]
+    for i, weight in enumerate(weights):
+        if i in fine:
+            total += weight * MEAN
+            continue
         own, shift = octave_frame(i, seed=seed)
         axes = [2.0**i * axis + s for axis, s in zip((x, y, z), shift, strict=True)]
         far = worley_grid(*axes, seed=own or 0, normalize="clip")
         total += weight * (1.0 - far)
-    return np.clip((total - LOWEST) / (HIGHEST - LOWEST), 0.0, 1.0)
+    lumps = np.clip((total - LOWEST) / (HIGHEST - LOWEST), 0.0, 1.0)
+    if not fine:
+        return lumps, ()
+    lost = weights[fine].sum() * (1.0 - MEAN) / (HIGHEST - LOWEST)
+    what = "noise", "octaves too fine to show"
+    return lumps, (Skipped(*what, len(fine), OCTAVES, min(float(lost), 1.0), "lumps"),)
 
 
 @checked
@@ -178,7 +201,8 @@ def billows(
 
     Returns
     -------
-    The cloud map; its base is the plane y = 0.
+    The cloud map; its base is the plane y = 0. Octaves finer than a voxel are left
+    out, which stands in its `skipped`.
 
     Raises
     ------
@@ -206,6 +230,7 @@ def billows(
     (x, y, z), origin = _lattice(lower, upper, voxel)
     # 2. Some layers at a time, and of those the part that has coverage.
     density = np.zeros((len(z), len(y), len(x)))
+    skipped: tuple[Skipped, ...] = ()
     thick = max(1, ROOM // (len(y) * len(x)))
     for first in range(0, len(z), thick):
         layers = np.arange(first, min(first + thick, len(z)))
@@ -218,10 +243,11 @@ def billows(
         if not len(k):
             continue
         places = x[i], y[j], z[layers[k]]
-        lumps, detail = (
-            lumps_grid(*(axis / cell for axis in places), seed=own)
+        (lumps, rows), (detail, more) = (
+            lumps_grid(*(axis / cell for axis in places), seed=own, finest=voxel / cell)
             for cell, own in ((lump, seed), (grain, ~seed))
         )
+        skipped = (*rows, *more)  # the same in every step
         density[np.ix_(layers[k], j, i)] = carve(
             depth[np.ix_(k, j, i)],
             lumps,
@@ -234,7 +260,7 @@ def billows(
         watch("layers", (int(layers[-1]) + 1, len(z)))
     # 3. Lumps that came off hang in the air as beads: keep the largest part alone.
     density *= _largest_mask(density)
-    return _cropped(density, origin, voxel, ())
+    return _cropped(density, origin, voxel, skipped)
 
 
 def _largest_mask(density: Array) -> NDArray[np.bool_]:

@@ -22,6 +22,10 @@ from refcloud.noise.worley_smooth import Detail, Octaves
 
 Count = Annotated[int, Range(1, MOST_VOXELS)]
 Length = Annotated[float, Range(1e-100, 1e100, "scene units")]
+Edge = (
+    Annotated[float, Range(0.0, unit="scene units")]
+    | Annotated[Array, Shape(3), Range(0.0, unit="scene units")]
+)
 
 
 @checked
@@ -77,7 +81,7 @@ def box_cloud(
     seed: Seed = 0,
     octaves: Octaves = 3,
     threshold: Annotated[float, Range(0.0, 1.0, open_upper=True)] = THRESHOLD,
-    edge: Annotated[float, Range(0.0, unit="scene units")] = 0.0,
+    edge: Edge = 0.0,
     detail: Detail = "smooth",
 ) -> VoxelGrid:
     """Fill a box with cloud from Worley and smooth noise that is fixed in the world.
@@ -103,7 +107,7 @@ def box_cloud(
         Level of the noise at which cloud begins in the middle of the box.
     edge
         Distance from the walls within which the cloud thins out to nothing, scene
-        units; 0 leaves it as it is, with flat sides.
+        units, one number or by axis; 0 leaves it as it is, with flat sides.
     detail
         The finer noise: "smooth", or "gradient", which document D rejected (N32).
 
@@ -150,7 +154,7 @@ def box_coverage(
     *,
     first: Vector,
     second: Vector,
-    edge: Annotated[float, Range(0.0, unit="scene units")],
+    edge: Edge,
 ) -> Array:
     """Give how much cloud there may be, from none at a box's walls to all inside.
 
@@ -164,8 +168,8 @@ def box_coverage(
     first, second
         Any two opposite corners, shape (3,), scene units.
     edge
-        Distance from the walls at which the coverage is whole, scene units; 0 makes it
-        1 in the box.
+        Distance from the walls at which the coverage is whole, scene units, one number
+        or by axis; 0 makes it 1 in the box.
 
     Returns
     -------
@@ -186,11 +190,12 @@ def box_coverage(
     """
     lower, upper = spanned(first, second)
     shares = []
-    for axis, low, high in zip((x, y, z), lower, upper, strict=True):
+    edges = np.broadcast_to(edge, (3,))
+    for axis, low, high, reach in zip((x, y, z), lower, upper, edges, strict=True):
         inside = np.minimum(axis - low, high - axis)
-        if edge > 0.0:
+        if reach > 0.0:
             # Beyond the edge it is 1 however far: nothing large is divided.
-            share = np.clip(inside, 0.0, edge) / edge
+            share = np.clip(inside, 0.0, reach) / reach
             shares.append(share * share * (3.0 - 2.0 * share))
         else:
             shares.append(np.where(inside >= 0.0, 1.0, 0.0))

@@ -30,7 +30,7 @@ class Octaves:
 
     Attributes
     ----------
-    count
+    orders
         N, number of octaves; 1 is single scattering.
     extinction
         a: octave n sees the optical depth toward the sun times a^n.
@@ -48,7 +48,7 @@ class Octaves:
         Factor on the optical depth that these two see.
     """
 
-    count: Annotated[int, Range(1, 16)] = 4
+    orders: Annotated[int, Range(1, 16)] = 4
     extinction: Share = 0.5
     contribution: Share = 0.5
     narrowing: Share = 0.6
@@ -151,7 +151,7 @@ def octave_source(
     True
     """
     total = np.zeros(np.broadcast_shapes(cos_theta.shape, tau.shape))
-    for n in range(octaves.count):
+    for n in range(octaves.orders):
         weight = albedo ** (n + 1) * octaves.contribution**n
         if weight == 0.0:
             break

@@ -14,19 +14,22 @@ ray costs eight reads of four neighbouring numbers.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.camera import Camera, OrthographicCamera, rays
-from refcloud.checking import checked
+from refcloud.checking import checked, complaint
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Positive, Range, Seed, Shape, Skipped
 from refcloud.march import ray_box
 from refcloud.noise import uniform
 
-Table = NDArray[np.float32]
+Table = NDArray[Any]  # float64 or float32, as the caller asks
+DType = Literal["float64", "float32"]
+MOST_CELLS = 1 << 26  # 2 GB of float64, four numbers each
+MOST_STEPS = 1 << 16  # on a ray: more would take hours
 CHUNK = 1 << 14  # rays at a time: what all steps read and write stays in the cache
 Step = Annotated[float, Positive]
 Least = Annotated[float, Range(0.0, 1.0, open_upper=True)]
@@ -55,7 +58,7 @@ class Shining:
     size: Array
 
 
-def shining_of(grid: VoxelGrid, sigma_t: float) -> Shining:
+def shining_of(grid: VoxelGrid, sigma_t: float, dtype: DType) -> Shining:
     """Make the table of a cloud, still dark.
 
     Parameters
@@ -64,13 +67,18 @@ def shining_of(grid: VoxelGrid, sigma_t: float) -> Shining:
         The cloud map.
     sigma_t
         Extinction at density 1, 1 / scene unit.
+    dtype
+        Type of the numbers.
 
     Returns
     -------
     The table with colors 0.
     """
     D, H, W = grid.density.shape
-    table = np.zeros((D + 2, H + 2, W + 2, 4), np.float32)
+    if grid.density.size > MOST_CELLS:
+        got = f"{grid.density.size} cells"
+        raise ValueError(complaint("grid", f"at most {MOST_CELLS} cells", got))
+    table = np.zeros((D + 2, H + 2, W + 2, 4), dtype)
     inner = table[1:-1, 1:-1, 1:-1, 3]
     np.multiply(grid.density, sigma_t, out=inner, casting="same_kind")
     bordered(table[..., 3:])
@@ -98,6 +106,7 @@ def march_shining(
     step: Step,
     least: Least = 0.0,
     seed: Seed = 0,
+    dtype: DType = "float64",
 ) -> tuple[Array, Array]:
     """March a camera's rays through a cloud that shines.
 
@@ -121,10 +130,17 @@ def march_shining(
         A ray ends where its transmittance is at most this.
     seed
         Chooses the starts of the rays.
+    dtype
+        Type of the arithmetic: "float64", or "float32", some 1e-5 off.
 
     Returns
     -------
     Radiance of shape (H, W, 3), and transmittance of shape (H, W).
+
+    Raises
+    ------
+    ValueError
+        A ray would have more than 65,536 steps, or the grid has more than 2^26 cells.
 
     Source: document D (R02, R03); E38.
 
@@ -137,7 +153,7 @@ def march_shining(
     >>> bool(np.allclose(L + T[..., None], 1.0, atol=1e-6)), abs(T[0, 0] - 0.37) < 0.03
     (True, np.True_)
     """
-    cloud = shining_of(grid, sigma_t)
+    cloud = shining_of(grid, sigma_t, dtype)
     cloud.table[1:-1, 1:-1, 1:-1, :3] = colors
     bordered(cloud.table[..., :3])
     radiance, through, _ = marched(cloud, camera, step=step, least=least, seed=seed)
@@ -170,6 +186,10 @@ def marched(
     origins, directions = (a.reshape(-1, 3) for a in rays(camera))
     counts = np.array(cloud.occupied.shape[::-1]) - 1
     upper = cloud.lower + counts * cloud.size
+    across = float(np.sqrt(np.square(counts * cloud.size).sum()))
+    if across / MOST_STEPS > step:
+        expected = f"at least {across / MOST_STEPS:.3g}, {MOST_STEPS} steps on a ray"
+        raise ValueError(complaint("step", expected, f"{step:g}"))
     # 1. Rays that meet the box, and where each begins.
     t0, t1 = ray_box(origins, directions, lower=cloud.lower, upper=upper)
     hit = np.flatnonzero(t1 > t0)
@@ -209,19 +229,21 @@ def _go(
     least: float,
     tally: NDArray[np.int64],
 ) -> tuple[Table, Table]:
-    """Take all rays of a chunk through the cloud, in single precision."""
+    """Take all rays of a chunk through the cloud, in the arithmetic of the table."""
     D, H, W = (n - 1 for n in cloud.occupied.shape)
     flat, occupied = cloud.table.reshape(-1, 4), cloud.occupied.ravel()
     line, layer = W + 2, (W + 2) * (H + 2)
-    last = np.array([W, H, D], np.float32)
+    dtype = cloud.table.dtype
+    real = dtype.type
+    last = np.array([W, H, D], dtype)
     corners = (0, line, layer, layer + line)
-    start, speed = at.astype(np.float32), move.astype(np.float32)
-    light: Table = np.zeros((len(at), 3), np.float32)
-    T: Table = np.ones(len(at), np.float32)
+    start, speed = at.astype(dtype), move.astype(dtype)
+    light: Table = np.zeros((len(at), 3), dtype)
+    T: Table = np.ones(len(at), dtype)
     going = np.flatnonzero(steps > 0)
     for k in range(int(steps.max(initial=0))):
         # 2. Where the rays are that still go; rounding may leave them outside.
-        place = start[going] + np.float32(k) * speed[going]
+        place = start[going] + real(k) * speed[going]
         np.clip(place, 0.0, last, out=place)
         cell = place.astype(np.int32)
         # 3. Those with cloud around them.
@@ -247,7 +269,7 @@ def _go(
                 edges[b] *= t
                 edges[b] += edges[a]
             sample = edges[3]
-            share = -np.expm1(-np.float32(step) * sample[:, 3])
+            share = -np.expm1(-real(step) * sample[:, 3])
             seen = T[index]
             light[index] += (seen * share)[:, None] * sample[:, :3]
             T[index] = seen - seen * share

@@ -31,7 +31,8 @@ STEEPEST = 3.0
 STRAIGHT = 1e-12  # slopes that move less than this across any grid's slices
 NOTHING = ((1.0, 0.0), (1.0, 0.0))
 Values = NDArray[Any]
-Bounds = tuple[tuple[float, float], tuple[float, float]]  # of v and of u, or of q
+Pair = tuple[float, float]
+Bounds = tuple[Pair, Pair]  # of v and of u, or of q
 
 
 @dataclass(frozen=True)
@@ -116,16 +117,30 @@ class Shear:
         h_w, h_v, h_u = self.cell
         return np.sqrt(h_w**2 + np.square(v * h_v) + np.square(u * h_u))
 
+    def homogeneous(self, first: Pair, step: Pair) -> Array:
+        """Give a pixel's numbers (q - first) / step as quotients of linear forms.
+
+        Shape (3, 3): w, and along v and along u w times the number, as what it is at
+        pixel 0, and more per column and per row.
+        """
+        w, v, u = self.pixels.T
+        one = np.array([1.0, 0.0, 0.0])
+        if self.slope is None:
+            one = w
+        else:
+            v, u = v - self.slope[0] * w, u - self.slope[1] * w
+        return np.array(
+            [one, (v - first[0] * one) / step[0], (u - first[1] * one) / step[1]]
+        )
+
     def places(self, columns: Values, rows: Values) -> tuple[Array, Array]:
         """Give q_v and q_u of pixels, and NaN where rays lead away from the slices."""
-        start, right, down = self.pixels
         w, v, u = (
-            start[axis] + columns * right[axis] + rows * down[axis] for axis in range(3)
+            start + columns * right + rows * down
+            for start, right, down in self.homogeneous((0.0, 0.0), (1.0, 1.0))
         )
-        if self.slope is None:
-            w = np.where(w > 0.0, w, np.nan)
-            return v / w, u / w
-        return v - self.slope[0] * w, u - self.slope[1] * w
+        w = np.where(w > 0.0, w, np.nan)
+        return v / w, u / w
 
 
 def shears(grid: VoxelGrid, camera: AnyCamera) -> list[Shear]:

@@ -33,7 +33,7 @@ from refcloud.march.warp import developed
 from refcloud.optics import Medium, Sun
 from refcloud.transport import LightVolume, sun_depths
 
-BLOCK = 4  # slices at a time: they share a rectangle, and fill a cache
+BLOCK = 6  # slices at a time: they share a rectangle, and fill a cache
 # Of densities and optical depths per cell: single precision holds their products.
 SINGLE = 1e15
 

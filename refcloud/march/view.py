@@ -17,6 +17,7 @@ from refcloud.march.shear import Bounds, Shear, seen, shears
 
 FINER = 1.25  # image samples per cell, where the cloud is nearest
 LARGEST = 2048  # image samples along a side, whatever the grid
+Span = tuple[list[int], list[int]]
 MARGIN = 2  # samples around what shows: Catmull-Rom weighs two to each side
 
 
@@ -30,15 +31,14 @@ class View:
         The camera and the slices.
     q_v, q_u
         Of the image's rows and columns, shapes (R_v,) and (R_u,).
-    rows, columns
-        Where there is cloud along v and along u of each slice, (K, V) and (K, U).
+    spans
+        The first and the last cell with cloud along v, and along u, of each slice.
     """
 
     shear: Shear
     q_v: Array
     q_u: Array
-    rows: NDArray[np.bool_]
-    columns: NDArray[np.bool_]
+    spans: tuple[Span, Span]
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -48,8 +48,11 @@ class View:
     @property
     def cut(self) -> bool:
         """Whether cloud ends at a side of the box, or the eye is within the box."""
-        touched = any(side[:, [0, -1]].any() for side in (self.rows, self.columns))
-        return bool(touched) or self.shear.begins > -0.5
+        touched = any(
+            min(first) <= 0 or max(last) >= n - 1
+            for (first, last), n in zip(self.spans, self.shear.counts[1:], strict=True)
+        )
+        return touched or self.shear.begins > -0.5
 
     def ends(self, q_v: Array, q_u: Array) -> tuple[Image, Image]:
         """Give w where rays enter the box and leave it; they broadcast."""
@@ -122,8 +125,9 @@ def view_of(grid: VoxelGrid, camera: AnyCamera, side: int | None) -> View | None
     planes = []
     for other, along in ((u, v), (v, u)):
         plane = across[other] if w < along else across[other].T
-        planes.append(plane[::-1] if shear.back else plane)
-    return View(shear, *image_grid(shear, bounds, turned, side), *planes)
+        planes.append(span_of(plane[::-1] if shear.back else plane))
+    q_v, q_u = image_grid(shear, bounds, turned, side)
+    return View(shear, q_v, q_u, (planes[0], planes[1]))
 
 
 def image_grid(
@@ -151,23 +155,32 @@ def part_of(view: View, w: Array, half: float) -> Part | None:
     if not w.size:
         return None
     slabs = slice(max(math.floor(w[0]), 0), math.ceil(w[-1]) + 1)
-    middle = np.maximum(w, 0.5 * (w + half + shear.begins))
-    offset, gain = shear.across(middle)
+    offset, gain = shear.across(np.maximum(w, 0.5 * (w + half + shear.begins)))
     cells, at, image = [], [], []
-    lines = (view.rows, view.q_v), (view.columns, view.q_u)
-    for (occupied, q), own in zip(lines, offset, strict=True):
-        numbers = np.flatnonzero(occupied[slabs].any(axis=0))
-        if not numbers.size:
-            return None
+    for (firsts, lasts), q, n, own in zip(
+        view.spans, (view.q_v, view.q_u), shear.counts[1:], offset, strict=True
+    ):
         # Cloud shows up to one cell beside its last one.
-        first, last = int(numbers[0]) - 1, int(numbers[-1]) + 1
-        ends = (np.array([[first], [last]]) - own) / gain
-        ends = (ends - q[0]) / (q[1] - q[0])
-        start = int(np.clip(np.floor(ends.min()), 0, len(q)))
-        stop = int(np.clip(np.ceil(ends.max()) + 1, 0, len(q)))
+        first, last = min(firsts[slabs]) - 1, max(lasts[slabs]) + 1
+        if first > last:
+            return None
+        # For one cell q only rises or only falls with w: the end slices bound it.
+        ends = [(cell - own[k]) / gain[k] for cell in (first, last) for k in (0, -1)]
+        step = q[1] - q[0]
+        start = math.floor(max((min(ends) - q[0]) / step, 0.0))
+        stop = math.ceil(min((max(ends) - q[0]) / step + 1.0, float(len(q))))
         if start >= stop:
             return None
-        cells.append((max(first, 0), min(last + 1, occupied.shape[1])))
+        cells.append((max(first, 0), min(last + 1, n)))
         at.append(own[:, None] + gain[:, None] * q[start:stop])
         image.append(slice(start, stop))
     return Part(w, (cells[0], cells[1]), (at[0], at[1]), (image[0], image[1]))
+
+
+def span_of(occupied: NDArray[np.bool_]) -> tuple[list[int], list[int]]:
+    """List the first and the last cell with cloud of each slice; n and -1 if none."""
+    n = occupied.shape[1]
+    some = occupied.any(axis=1)
+    first = np.where(some, occupied.argmax(axis=1), n)
+    last = np.where(some, n - 1 - occupied[:, ::-1].argmax(axis=1), -1)
+    return first.tolist(), last.tolist()

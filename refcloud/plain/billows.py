@@ -12,7 +12,7 @@ from refcloud.plain.smooth import remap
 from refcloud.plain.worley import worley
 
 OCTAVES, PERSISTENCE = 3, 0.4
-LOWEST, HIGHEST = 0.12, 0.93
+LOWEST, HIGHEST, MEAN = 0.12, 0.93, 0.48
 
 
 def clamp(value: float, most: float = 1.0) -> float:
@@ -20,22 +20,27 @@ def clamp(value: float, most: float = 1.0) -> float:
     return min(max(value, 0.0), most)
 
 
-def lumps(point: Sequence[float], seed: int = 0) -> float:
+def lumps(point: Sequence[float], seed: int, finest: float) -> float:
     """Give the lumps at one place."""
     total = weights = 0.0
     for i in range(OCTAVES):
         own, shift = octave_frame(i, seed=seed)
         place = [2.0**i * p + s for p, s in zip(point, shift, strict=True)]
-        total += PERSISTENCE**i * (1.0 - worley(place, seed=own or 0, normalize="clip"))
+        height = 1.0 - worley(place, seed=own or 0, normalize="clip")
+        total += PERSISTENCE**i * (height if 2.0**-i >= finest else MEAN)
         weights += PERSISTENCE**i
     return clamp(remap(total / weights, LOWEST, HIGHEST, 0.0, 1.0))
 
 
 def lumps_grid(
-    x: Sequence[float], y: Sequence[float], z: Sequence[float], seed: int = 0
+    x: Sequence[float],
+    y: Sequence[float],
+    z: Sequence[float],
+    seed: int = 0,
+    finest: float = 0.0,
 ) -> list:
     """Give the lumps at each place of a grid, as [z][y][x]."""
-    return [[[lumps((a, b, c), seed) for a in x] for b in y] for c in z]
+    return [[[lumps((a, b, c), seed, finest) for a in x] for b in y] for c in z]
 
 
 def carve(

@@ -73,15 +73,15 @@ def placed_texture(texture: list, repeats: tuple[int, int, int]) -> list:
     ]
 
 
-def box_coverage(point: Point, lower: Point, upper: Point, edge: float) -> float:
+def box_coverage(point: Point, lower: Point, upper: Point, edge: Point) -> float:
     """Give how much cloud there may be at one place."""
     cover = 1.0
-    for p, low, high in zip(point, lower, upper, strict=True):
+    for p, low, high, reach in zip(point, lower, upper, edge, strict=True):
         inside = min(p - low, high - p)
         if inside < 0.0:
             return 0.0
-        if edge > 0.0:
-            t = min(inside / edge, 1.0)
+        if reach > 0.0:
+            t = min(inside / reach, 1.0)
             cover *= t * t * (3.0 - 2.0 * t)
     return cover
 
@@ -95,7 +95,7 @@ def box_cloud(
     seed: int = 0,
     octaves: int = 3,
     threshold: float = 0.65,
-    edge: float = 0.0,
+    edge: Point = (0.0, 0.0, 0.0),
     detail: str = "smooth",
 ) -> list:
     """Give the densities of a box of cloud, as [z][y][x]."""

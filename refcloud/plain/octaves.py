@@ -9,8 +9,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from refcloud.plain.camera import Camera, along, rays
-from refcloud.plain.cloudmap import Grid, Point, cell_size, clamped_trilinear
+from refcloud.plain.camera import Camera, Point, along, rays
+from refcloud.plain.cloudmap import Grid, cell_size, clamped_trilinear
 from refcloud.plain.march import ray_box
 from refcloud.plain.noise import uniform
 from refcloud.plain.optics import henyey_greenstein
@@ -19,7 +19,7 @@ from refcloud.plain.optics import henyey_greenstein
 class Octaves(NamedTuple):
     """The light model, fields as `refcloud.lighting.Octaves`."""
 
-    count: int
+    orders: int
     extinction: float
     contribution: float
     narrowing: float
@@ -44,7 +44,7 @@ def octave_source(
 ) -> float:
     """Give the radiance per unit of irradiance and optical depth at one place."""
     total = 0.0
-    for n in range(octaves.count):
+    for n in range(octaves.orders):
         weight = albedo ** (n + 1) * octaves.contribution**n
         reaches = math.exp(-(octaves.extinction**n) * tau)
         total += weight * octave_lobe(cos_theta, n, g, octaves) * reaches

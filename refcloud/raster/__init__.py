@@ -4,6 +4,7 @@ from refcloud.raster.blending import blend
 from refcloud.raster.footprint import Patch, footprint, patch, transmittance
 from refcloud.raster.framebuffer import Framebuffer, clear, framebuffer, read_pixels
 from refcloud.raster.lines import draw_lines, line_pixels
+from refcloud.raster.quad import quad_corners, quad_points
 from refcloud.raster.splat import read_mean, splat
 from refcloud.raster.walls import (
     draw_box,
@@ -25,6 +26,8 @@ __all__ = [
     "framebuffer",
     "line_pixels",
     "patch",
+    "quad_corners",
+    "quad_points",
     "read_mean",
     "read_pixels",
     "splat",

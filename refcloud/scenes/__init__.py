@@ -1,6 +1,16 @@
 """Named scenes: the composed cumulus, and the figures of the documents."""
 
 from refcloud.scene import SCENES, Model, Scene, View
-from refcloud.scenes import cumulus, man
+from refcloud.scenes import cumulus, demand, demand_hero, demand_plane, man
 
-__all__ = ["SCENES", "Model", "Scene", "View", "cumulus", "man"]
+__all__ = [
+    "SCENES",
+    "Model",
+    "Scene",
+    "View",
+    "cumulus",
+    "demand",
+    "demand_hero",
+    "demand_plane",
+    "man",
+]

@@ -47,7 +47,9 @@ from refcloud.transport.windows import (
 
 Values = NDArray[Any]  # float32 or float64
 Pair = tuple[float, float]  # along v and along u
-FETCHED = 8  # slices at a time: half a megabyte of 128 x 128, within a cache
+# Slices read and written at a time, since they may lie scattered in memory: half a
+# megabyte of 128 x 128, which stays in a cache.
+TOGETHER = 8
 
 
 @dataclass(frozen=True)
@@ -114,19 +116,23 @@ def sheared_depths(
     values = np.zeros((s, s, size), out.dtype)
     room = np.empty((s + 2, (V + 2 * PAD) * stride), out.dtype)
     columns = Columns(V, U, s, slopes, values, {}, room)
+    done = np.zeros((TOGETHER, s * V, s * U), out.dtype)
     for m, mixed in enumerate(mixed_slices(slabs, s, filled, out.dtype)):
+        if m and m % TOGETHER == 0:
+            out[m - TOGETHER : m] = done
         if mixed is None and not columns.entered:
-            out[m] = 0.0  # nothing between here and the sun
-            continue
+            continue  # nothing between here and the sun
         step = 0.5 if m == 0 else 1.0  # the box begins half a step before slice 0
         enter(columns, m - 0.5 * step)
         if mixed is not None:
             place(columns, mixed, m - 0.5 * step, step, length / s, filled)
         enter(columns, m)
         kept = lengthen(columns, m) if filled else []
-        read(columns, m, out[m])
+        read(columns, m, done[m % TOGETHER])
         for view, old in reversed(kept):
             view[...] = old
+    rest = (s * K - 1) % TOGETHER + 1
+    out[s * K - rest :] = done[:rest]
 
 
 def border_is_filled(slabs: Values) -> bool:
@@ -144,16 +150,15 @@ def mixed_slices(
     there is as dense as the border, since the field is so for half a cell.
     """
     K, V, U = slabs.shape
-    # Slices are fetched several at a time: they may lie scattered in memory.
-    block = np.zeros((FETCHED + 1, V + 2 * PAD, U + 2 * PAD), dtype)
+    block = np.zeros((TOGETHER + 1, V + 2 * PAD, U + 2 * PAD), dtype)
     rows = block.reshape(len(block), -1)
     mixed = np.empty_like(rows[0])
     before = False  # whether there is cloud in slice k - 1
     for k in range(K):
-        n = k % FETCHED + 1
+        n = k % TOGETHER + 1
         if n == 1:
-            block[0] = block[FETCHED]
-            fetch(slabs[k : k + FETCHED], filled, out=block[1:])
+            block[0] = block[TOGETHER]
+            fetch(slabs[k : k + TOGETHER], filled, out=block[1:])
         here = bool(rows[n].max() > 0.0)
         if k == 0:  # from the face to the first sample
             yield rows[n] if here else None
@@ -230,26 +235,25 @@ def read(columns: Columns, m: int, out: Values) -> None:
     s, V, U, stride = columns.scale, columns.V, columns.U, columns.stride
     by_v, by_u = (m * slope for slope in columns.slopes)
     across = [taps_of(by_u, q, s) for q in range(s)]
-    first = min(tap.column for taps in across for tap in taps)
+    first = min(column for taps in across for _, _, column in taps)
     lines, total, spare = columns.room[:-2], columns.room[-2], columns.room[-1]
     size = V * stride
+    total, more = total[:size], size + PAD + 1
     for p in range(s):
+        rows = [
+            (weight, phase, columns.number(column, first))
+            for weight, phase, column in taps_of(by_v, p, s)
+        ]
         for q in range(s):
-            terms = []
-            for tap in taps_of(by_v, p, s):
-                start = columns.number(tap.column, first)
-                row = columns.values[tap.phase, q, start : start + size + PAD + 1]
-                terms.append((tap.weight, row))
-            weighted(terms, lines[q][: size + PAD + 1], spare)
-        for q in range(s):
-            terms = []
-            for tap in across[q]:
-                start = tap.column - first
-                terms.append((tap.weight, lines[tap.phase][start : start + size]))
-            weighted(terms, total[:size], spare)
+            values = columns.values[:, q]
+            terms = [(w, values[phase, at : at + more]) for w, phase, at in rows]
+            weighted(terms, lines[q][:more], spare)
+        for q, taps in enumerate(across):
+            terms = [(w, lines[i][c - first : c - first + size]) for w, i, c in taps]
+            weighted(terms, total, spare)
             # A cubic may fall below 0 beside an edge; no column density does.
-            samples = np.maximum(total[:size], 0.0, out=total[:size])
-            out[p::s, q::s] = samples.reshape(V, stride)[:, :U]
+            np.maximum(total, 0.0, out=total)
+            out[p::s, q::s] = total.reshape(V, stride)[:, :U]
 
 
 def weighted(terms: list[tuple[float, Values]], out: Values, spare: Values) -> None:

@@ -7,7 +7,7 @@ ray c = j + m slope. Whole numbers c = s r + p are columns: number r of phase p.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +17,8 @@ Values = NDArray[Any]
 PAD = 2  # columns beside a slice: a ray is read from two columns on each side of it
 
 
-class Tap(NamedTuple):
-    """A column that sample j of some phase reads: number `column` + j of `phase`."""
-
-    weight: float
-    phase: int
-    column: int
+# What sample j of some phase reads: a weight, times column number + j of a phase.
+Tap = tuple[float, int, int]
 
 
 def window_of(moved: float, phase: int, scale: int) -> tuple[int, float]:
@@ -36,13 +32,13 @@ def window_of(moved: float, phase: int, scale: int) -> tuple[int, float]:
 
 
 def taps_of(moved: float, phase: int, scale: int) -> list[Tap]:
-    """List the columns from which the samples of a phase are read, by Catmull-Rom."""
+    """List what the samples of a phase read, by Catmull-Rom: weight, phase, column."""
     whole = math.floor(moved)
     taps = []
     for k, weight in enumerate(catmull_rom(moved - whole)):
         column, other = divmod(phase + whole + k - 1, scale)
         if weight:  # on a column, only that one
-            taps.append(Tap(weight, other, column))
+            taps.append((weight, other, column))
     return taps
 
 

@@ -1,4 +1,4 @@
-"""The march benchmark: every contender sees the same picture, as near as its row says."""
+"""The march benchmark: every contender sees the same picture."""
 
 from __future__ import annotations
 

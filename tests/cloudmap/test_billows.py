@@ -20,16 +20,31 @@ from refcloud.cloudmap import (
 )
 from refcloud.cloudmap.billows import RISE, ROOM
 
-SMALL = {"diameters": [20, 11, 11], "voxel": 0.9, "lump": 2.4, "grain": 0.6}
+SMALL = {"diameters": [20, 11, 11], "voxel": 0.9, "lump": 4.0, "grain": 3.7}
 share = st.floats(0.0, 1.0)
 
 
 def test_lumps_fill_the_range_and_hardly_leave_it() -> None:
     line = 0.173 * np.arange(64)
-    lumps = lumps_grid(line, line, line, seed=3)
+    lumps, skipped = lumps_grid(line, line, line, seed=3)
+    assert not skipped
     assert 0.0 <= lumps.min() < 0.05
     assert 0.9 < lumps.max() <= 1.0
     assert ((lumps == 0.0) | (lumps == 1.0)).mean() < 0.002
+
+
+def test_n16_octaves_that_cannot_be_displayed_are_left_out() -> None:
+    line = 0.173 * np.arange(24)
+    whole, _ = lumps_grid(line, line, line, seed=3)
+    for finest, count in ((0.3, 1), (0.6, 2), (3.0, 3)):
+        coarse, (row,) = lumps_grid(line, line, line, seed=3, finest=finest)
+        assert (row.skipped, row.of, row.unit) == (count, 3, "lumps")
+        assert np.abs(coarse - whole).max() <= row.bound <= 1.0
+        # They are left at their mean: what is seen stays as bright.
+        assert abs(coarse.mean() - whole.mean()) < 0.02
+    assert billows(**SMALL).skipped == ()
+    rows = billows(**(SMALL | {"grain": 1.0})).skipped
+    assert [row.skipped for row in rows] == [2]
 
 
 @given(st.floats(-20.0, 20.0), st.floats(0.0, 5.0), share, share, st.floats(0.0, 9.0))

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 import refcloud.cloudmap as array
-from refcloud.cloudmap.billows import HIGHEST, LOWEST, OCTAVES, PERSISTENCE
+from refcloud.cloudmap.billows import HIGHEST, LOWEST, MEAN, OCTAVES, PERSISTENCE
 from refcloud.plain import billows as plain
 from twins import Draw, twin
 from twins.noise import seeds
@@ -26,9 +26,11 @@ lengths = st.floats(0.1, 20.0)
 )
 def lumps_grid(draw: Draw):
     assert (plain.OCTAVES, plain.PERSISTENCE) == (OCTAVES, PERSISTENCE)
-    assert (plain.LOWEST, plain.HIGHEST) == (LOWEST, HIGHEST)
+    assert (plain.LOWEST, plain.HIGHEST, plain.MEAN) == (LOWEST, HIGHEST, MEAN)
     axes, seed = [draw(places) for _ in range(3)], draw(seeds)
-    return array.lumps_grid(*axes, seed=seed), plain.lumps_grid(*axes, seed=seed)
+    finest = draw(st.sampled_from([0.0, 0.3, 0.5, 2.0]))
+    actual, _ = array.lumps_grid(*axes, seed=seed, finest=finest)
+    return actual, plain.lumps_grid(*axes, seed, finest)
 
 
 @twin(

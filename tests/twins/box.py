@@ -12,7 +12,12 @@ from twins.cloudmap import axes, coordinates, grids, places, plain_grid
 from twins.smooth import texture_ways
 
 counts = st.tuples(*[st.integers(1, 3)] * 3)
-edges = st.just(0.0) | st.floats(0.01, 2.0)
+edge = st.just(0.0) | st.floats(0.01, 2.0)
+edges = edge | st.tuples(edge, edge, edge)
+
+
+def by_axis(edge) -> list[float]:
+    return np.broadcast_to(edge, (3,)).tolist()
 
 
 def drawn_box(draw: Draw) -> tuple[np.ndarray, np.ndarray]:
@@ -68,7 +73,10 @@ def box_coverage(draw: Draw):
     actual = array.box_coverage(*lines, first=upper, second=lower, edge=edge)
     x, y, z = lines
     return actual, [
-        [[plain.box_coverage((a, b, c), lower, upper, edge) for a in x] for b in y]
+        [
+            [plain.box_coverage((a, b, c), lower, upper, by_axis(edge)) for a in x]
+            for b in y
+        ]
         for c in z
     ]
 
@@ -87,4 +95,5 @@ def box_cloud(draw: Draw):
         "threshold": draw(st.floats(0.0, 0.9)),
         "edge": draw(edges),
     }
-    return array.box_cloud(*box, **how).density, plain.box_cloud(*box, **how)
+    plain_how = how | {"edge": by_axis(how["edge"])}
+    return array.box_cloud(*box, **how).density, plain.box_cloud(*box, **plain_how)
