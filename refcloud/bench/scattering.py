@@ -35,7 +35,7 @@ SEED, SUN = 2, Sun(np.array([0.62, 0.55, -0.1]), np.ones(3))
 EYE, FOV = (-1.2, -0.9, 3.8), 0.47
 SIGMA = 8.0  # optical depth .25 per voxel at 64 voxels' edge, 8 through the middle
 MARCH = 0.002  # tolerance of the pictures
-PIXELS, QUICK_PIXELS = 32, 12
+PIXELS, QUICK_PIXELS = 24, 12
 PATHS, QUICK_PATHS = 2048, 64
 
 

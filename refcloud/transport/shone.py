@@ -116,14 +116,12 @@ def sun_moments(
     dtype: Any,
 ) -> Reals:
     """Give the harmonics of parallel light in the near voxels, shape (R, B, M)."""
-    found = np.zeros((len(places), len(light.irradiance), len(beams.near[0])), dtype)
-    for toward, sun, irradiance in zip(
-        light.toward, suns, light.irradiance.T, strict=True
-    ):
-        along = harmonics(-toward, degree)[places]
-        colours = (along[:, None] * irradiance).astype(dtype)
-        found += colours[:, :, None] * sun[beams.near].astype(dtype)
-    return found
+    B, M = len(light.irradiance), len(beams.near[0])
+    along = harmonics(-light.toward, degree)[:, places]  # (S, R)
+    colours = along.T[:, None] * light.irradiance  # (R, B, S)
+    reaching = np.array([sun[beams.near] for sun in suns], dtype).reshape(-1, M)
+    found = colours.reshape(-1, len(suns)).astype(dtype) @ reaching
+    return found.reshape(-1, B, M)
 
 
 def boundary(directions: Directions, sky: Array, ground: Array) -> Array:

@@ -123,17 +123,17 @@ def solve(
         start = np.zeros_like(first)
         if before is not None and moments is not None:
             start = _carried(moments, *before, stage, level, shone)
-        found = fixed_point(
-            partial(_scattered_once_more, level, share, first),
-            start,
-            tolerance=stage.residual,
-            most=stage.most,
-        )
-        moments = found.value
-        counts.append(found.iterations)
-        if stage.most > 2:  # shorter stages take a look, they do not converge
-            residuals.append(found.residual)
-            converged &= found.converged
+        again = partial(_scattered_once_more, level, share, first)
+        if stage.most == 1:
+            moments = again(start)
+            counts.append(1)
+        else:
+            found = fixed_point(again, start, tolerance=stage.residual, most=stage.most)
+            moments = found.value
+            counts.append(found.iterations)
+            if stage.most > 2:  # shorter stages take a look, they do not converge
+                residuals.append(found.residual)
+                converged &= found.converged
         before = stage, level
     assert moments is not None
     assert before is not None
