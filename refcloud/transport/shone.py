@@ -119,9 +119,9 @@ def sun_moments(
     B, M = len(light.irradiance), len(beams.near[0])
     along = harmonics(-light.toward, degree)[:, places]  # (S, R)
     colours = along.T[:, None] * light.irradiance  # (R, B, S)
-    reaching = np.array([sun[beams.near] for sun in suns], dtype).reshape(-1, M)
-    found = colours.reshape(-1, len(suns)).astype(dtype) @ reaching
-    return found.reshape(-1, B, M)
+    reaching = np.array([sun[beams.near] for sun in suns], dtype).reshape(len(suns), M)
+    found = colours.reshape(len(places) * B, len(suns)).astype(dtype) @ reaching
+    return found.reshape(len(places), B, M)
 
 
 def boundary(directions: Directions, sky: Array, ground: Array) -> Array:
