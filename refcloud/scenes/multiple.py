@@ -11,6 +11,7 @@ import time
 
 import numpy as np
 
+from refcloud.choices import AMBIENT
 from refcloud.cloudmap import generate
 from refcloud.conventions import WHOLE_SPHERE
 from refcloud.image import Picture
@@ -24,7 +25,7 @@ from refcloud.sky import Sky
 
 # The sun of the other pictures, at a strength that leaves the brightest parts white.
 LATE_MORNING = Sun(
-    np.array([-0.62, 0.62, 0.42]), 0.42 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89])
+    np.array([-0.62, 0.62, 0.42]), 0.5 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89])
 )
 THICKNESS, G = 24.0, 0.6  # optical depth through the middle; clouds scatter forward
 # Edge of a voxel, scene units times pixels of width: a picture and its cloud are as
@@ -53,7 +54,7 @@ def draw(model: Model, view: View) -> Picture:
         (LATE_MORNING,) if view.suns is None else view.suns,
         Sky(),
         medium=view.medium or Medium(sigma_t, g=G, phase="hg"),
-        ambient=Sky().horizon,
+        ambient=AMBIENT,
         scattering="multiple",
         tolerance=view.tolerance,
         observe=view.observe,
