@@ -116,6 +116,7 @@ def test_a_tolerance_is_kept_against_the_finest_light(tolerance: float) -> None:
     assert np.abs(found - exact).max() > 0.0
 
 
+@pytest.mark.slow
 def test_swapping_sun_and_eye_changes_little() -> None:
     """Reciprocity: the whole of what one sees under the other's light is the same."""
     a, b = np.array([0.2, 0.1, 1.0]), np.array([0.7, 0.6, -0.2])

@@ -152,7 +152,10 @@ SLAB = {0.5: 0.70417, 1.0: 0.55341, 2.0: 0.39006, 5.0: 0.20766}
 
 
 # 26 directions: too few cross a slab aslant; worst seen + 8.2 %.
-@pytest.mark.parametrize(("count", "most"), [(26, 0.09), (50, 0.015), (128, 0.015)])
+@pytest.mark.parametrize(
+    ("count", "most"),
+    [(26, 0.09), (50, 0.015), pytest.param(128, 0.015, marks=pytest.mark.slow)],
+)
 @pytest.mark.parametrize("tau", SLAB)
 def test_a_slab_lets_through_what_theory_says(
     tau: float, count: int, most: float
@@ -194,6 +197,7 @@ def test_the_source_is_the_sum_over_directions() -> None:
     np.testing.assert_allclose(found[near], np.maximum(expected, 0.0)[near], atol=1e-7)
 
 
+@pytest.mark.slow
 def test_staged_light_is_the_converged_light_of_its_last_directions() -> None:
     plan = dataclasses.replace(PLANS["finest"])
     staged = scattered_light(cloud(16), SUN, medium=FORWARD, plan=plan)
