@@ -135,6 +135,7 @@ def render(
             method=method,
             ambient=ambient,
             mixing=mixing,
+            scattering=None if scattering == "single" else scattering,
         )
         view = View(width, height, camera, suns, medium, look, tolerance, seed, observe)
         model = scene.model()
@@ -148,6 +149,10 @@ def render(
     drawn = as_drawn(cloud, method)
     march = is_marched(cloud, method)
     _refuse_idle(march, look=look, ambient=ambient, mixing=mixing)
+    if not march and scattering != "single":
+        expected = "single beside the method splat"
+        advice = "march a cloud map, or light balls by refcloud.lighting.lit_by_solution"
+        raise ValueError(complaint("scattering", expected, "other", advice))
     notes: list[str] = []
     if drawn is not cloud and isinstance(drawn, Metaballs):
         notes.append(f"drawn as one ball per occupied voxel: {len(drawn)} balls")

@@ -89,12 +89,11 @@ def marched_multiple(
         radiance = radiance + through * background
     if np.ndim(medium.sigma_t) == 0:
         through = through[:, :1]
-    notes = found.notes
-    if not light.converged:
-        notes = (
-            *notes,
-            f"scattered light: not converged, residual {light.residual:.2g}",
-        )
+    D, H, W = light.shape
+    sweeps = " + ".join(str(count) for count in light.iterations)
+    state = "" if light.converged else f"; not converged, residual {light.residual:.2g}"
+    note = f"scattered light: {sweeps} sweeps, voxels {W} x {H} x {D}{state}"
+    notes = (*found.notes, note)
     return replace(found, radiance=radiance, transmittance=through, notes=notes)
 
 

@@ -117,7 +117,8 @@ def scattered_light(
     tolerance
         Error of the picture that is allowed, in units of displayed white, against the
         plan "finest", which 0 chooses. "finest" itself is some 0.005 from an unbiased
-        estimate at an optical depth of 0.25 per voxel, 0.02 at 1.25 (relative RMSE).
+        estimate at an optical depth of 0.25 per voxel, 0.02 at 1.25, 0.1 at 5 and 0.24
+        at 20 (relative RMSE).
 
     Returns
     -------

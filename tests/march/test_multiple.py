@@ -189,3 +189,15 @@ def test_solved_light_agrees_with_random_paths(g: float) -> None:
     total = found.radiance[:, 0].sum()
     error = np.sqrt(np.square(found.error[:, 0]).sum())
     assert abs(solved[:, 0].sum() - total) <= 0.01 * total + 4.0 * error
+
+
+def test_render_solves_notes_and_refuses() -> None:
+    how = {"width": 8, "medium": FORWARD, "suns": BRIGHT, "tolerance": 0.1}
+    once = rc.render(cloud(), **how)
+    many = rc.render(cloud(), scattering="multiple", **how)
+    assert many.linear.sum() > once.linear.sum()
+    assert any(note.startswith("scattered light: ") for note in many.notes)
+    with pytest.raises(ValueError, match=r"^scattering: expected single beside"):
+        rc.render(cloud(), scattering="multiple", method="splat")
+    with pytest.raises(ValueError, match=r"^scattering: expected none beside a scene"):
+        rc.render("man-09", scattering="multiple")
