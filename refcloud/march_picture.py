@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from refcloud.lighting import Haze
 from refcloud.lighting.colours import clearness
 from refcloud.march import Mixing
 from refcloud.march.marched import marched
+from refcloud.march.multiple import Scattering, marched_multiple
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 
@@ -31,6 +33,7 @@ def draw_march(
     haze: Haze | None = None,
     ambient: Array | None = None,
     mixing: Mixing | None = None,
+    scattering: Scattering = "single",
     tolerance: float = 0.0,
     observe: Observer | None = None,
 ) -> Picture:
@@ -46,7 +49,7 @@ def draw_march(
         The lights.
     background
         As `render`.
-    medium, haze, ambient, mixing
+    medium, haze, ambient, mixing, scattering
         As `render`; the haze counts the distance to the cloud's middle.
     tolerance
         Largest error of a channel.
@@ -65,7 +68,10 @@ def draw_march(
         # Light and transmittance are mixed after the march: their errors add up.
         tolerance /= 1.0 + max(float(behind.max()), float(haze.color.max()))
     origins, directions = rays(camera)
-    found = marched(
+    march, notes = marched, (ONCE,)
+    if scattering != "single":
+        march, notes = partial(marched_multiple, scattering=scattering), ()
+    found = march(
         cloud,
         origins.reshape(-1, 3),
         directions.reshape(-1, 3),
@@ -90,7 +96,7 @@ def draw_march(
     elif haze is not None:
         radiance = radiance + through * behind
     clock.stop("march")
-    return Picture(radiance, alpha, found.skipped, seconds, (ONCE, *found.notes))
+    return Picture(radiance, alpha, found.skipped, seconds, (*notes, *found.notes))
 
 
 def middle_of(cloud: VoxelGrid | Metaballs) -> Array:

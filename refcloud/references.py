@@ -81,7 +81,8 @@ PIECES = {
     "W05": "M: the cloud file and the programs' parameters",
     "W12": "M, S, C: the same seed gives the same picture",
     "X03": "M: 11,000 voxels as 1000, 100 and 30 balls",
-    "X09": "M: future work: balls without voxels in between",
+    "X09": "M, S: left as future work: balls without voxels in between, light that is"
+    " scattered forward many times",
 }
 
 # Number: (what is printed or left open, what refcloud does).

@@ -25,6 +25,7 @@ from refcloud.image import Picture
 from refcloud.lighting import Haze, LitMetaballs, Look, named
 from refcloud.lighting.look import LookName
 from refcloud.march import Mixing
+from refcloud.march.multiple import Scattering
 from refcloud.march_picture import draw_march
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
@@ -58,7 +59,7 @@ def render(
     haze: Haze | None = None,
     look: Look | LookName | None = None,
     method: Method | None = None,
-    scattering: Literal["single"] = "single",
+    scattering: Scattering = "single",
     ambient: Colour | None = None,
     mixing: Mixing | None = None,
     tolerance: Tolerance = 0.0,
@@ -99,7 +100,9 @@ def render(
         "splat" draws balls in two passes, a cloud map as one ball per occupied voxel;
         "march" follows rays. None splats metaballs and marches cloud maps.
     scattering
-        Light that is marched is scattered once.
+        How often light that is marched is scattered: "single" is once, "multiple" is
+        every order, solved first (`refcloud.transport.scattered_light`); or that light,
+        solved before, for another eye.
     ambient
         Radiance that reaches a marched cloud from all sides alike, RGB; None for the
         mean of a clear sky and the ground.
@@ -143,6 +146,7 @@ def render(
             method=method,
             ambient=ambient,
             mixing=mixing,
+            scattering=None if scattering == "single" else scattering,
         )
         how = tolerance, seed, observe, backend
         view = View(width, height, camera, suns, medium, look, *how)
@@ -169,6 +173,12 @@ def render(
         ambient=ambient,
         mixing=mixing,
     )
+    if scattering != "single" and not (march and isinstance(cloud, VoxelGrid)):
+        expected = "single where balls are drawn"
+        advice = (
+            "march a cloud map, or light balls by refcloud.lighting.lit_by_solution"
+        )
+        raise ValueError(complaint("scattering", expected, "other", advice))
     drawn = as_drawn(cloud, method)
     if drawn is not cloud and isinstance(drawn, Metaballs):
         notes.append(f"drawn as one ball per occupied voxel: {len(drawn)} balls")
@@ -195,6 +205,7 @@ def render(
             haze=haze,
             ambient=AMBIENT if ambient is None else ambient,
             mixing=mixing,
+            scattering=scattering,
             tolerance=tolerance,
             observe=observe,
         )

@@ -74,4 +74,5 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
     "man-10": partial(fitted, "man-10", "man-10"),
     "man-13": partial(fitted, "man-13", "man-13"),
     "man-14": partial(fitted, "man-14", "man-13"),
+    "multiple": partial(unfitted, "multiple", View(64, 48)),
 }

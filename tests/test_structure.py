@@ -23,7 +23,7 @@ FLOORS = (
     ("metaballs", "transport"),
     ("raster", "march"),
     ("lighting", "sky"),
-    ("compose", "scene", "noise_pictures", "choices"),
+    ("compose", "scene", "noise_pictures", "choices", "scattering_pictures"),
     ("march_picture",),
     ("render",),
     ("scenes", "fit_pictures"),

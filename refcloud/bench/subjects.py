@@ -5,9 +5,10 @@ from __future__ import annotations
 from refcloud.bench.approximate import APPROXIMATE
 from refcloud.bench.march import MARCH
 from refcloud.bench.noise import NOISE
+from refcloud.bench.scattering import SCATTERING
 from refcloud.bench.splat import SPLAT
 from refcloud.bench.subject import Subject
 
 SUBJECTS: dict[str, Subject] = {
-    subject.name: subject for subject in (NOISE, APPROXIMATE, SPLAT, MARCH)
+    subject.name: subject for subject in (NOISE, APPROXIMATE, SPLAT, MARCH, SCATTERING)
 }

@@ -17,6 +17,7 @@ from refcloud.lighting.octaves import (
 )
 from refcloud.lighting.order import depth_order
 from refcloud.lighting.shining import march_shining
+from refcloud.lighting.solved import lit_by_solution
 from refcloud.lighting.sunward import sunward
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "eyeward_literal",
     "field_value",
     "light_field",
+    "lit_by_solution",
     "lit_share",
     "march_shining",
     "named",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -11,6 +12,7 @@ from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Colour, Observer, Range, Shape, Tolerance
 from refcloud.march.marched import marched
 from refcloud.march.mixing import PHYSICAL, Mixing
+from refcloud.march.multiple import Scattering, marched_multiple
 from refcloud.march.rays import as_rays, shaped
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
@@ -29,9 +31,10 @@ def integrate(
     background: Colour | Annotated[Array, Shape("...", 3), Range(0.0)] | None = None,
     ambient: Colour | None = None,
     mixing: Mixing = PHYSICAL,
+    scattering: Scattering = "single",
     observe: Observer | None = None,
 ) -> tuple[Array, Array]:
-    """Integrate light that is scattered once along any rays.
+    """Integrate scattered light along any rays.
 
     Formula: L = albedo p(cos_theta) E int sigma_t rho exp(-tau_view) exp(-tau_sun) dt
     + albedo ambient (1 - T) + T background, summed over the suns
@@ -57,6 +60,9 @@ def integrate(
         this term holds every order of scattering.
     mixing
         Factors without a counterpart in physics, off by default.
+    scattering
+        "single" counts light that is scattered once; "multiple" solves the rest
+        (`refcloud.transport.scattered_light`); or that light, solved before.
     observe
         Called with (name, value) for each intermediate; "skipped" last.
 
@@ -88,7 +94,10 @@ def integrate(
             got = f"shape {background.shape}"
             raise ValueError(complaint("background", expected, got))
         behind = np.broadcast_to(background, (*rays.shape, 3)).reshape(-1, 3)
-    found = marched(
+    march = marched
+    if scattering != "single":
+        march = partial(marched_multiple, scattering=scattering)
+    found = march(
         cloud,
         rays.origins,
         rays.directions,

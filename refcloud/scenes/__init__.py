@@ -1,7 +1,7 @@
 """Named scenes: the composed cumulus, and the figures of the documents."""
 
 from refcloud.scene import SCENES, Model, Scene, View
-from refcloud.scenes import cumulus, demand, demand_hero, demand_plane, man
+from refcloud.scenes import cumulus, demand, demand_hero, demand_plane, man, multiple
 
 __all__ = [
     "SCENES",
@@ -13,4 +13,5 @@ __all__ = [
     "demand_hero",
     "demand_plane",
     "man",
+    "multiple",
 ]

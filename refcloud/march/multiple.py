@@ -1,0 +1,149 @@
+"""Every order of scattering along rays: once exactly, the rest as it was solved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from refcloud.camera import AnyCamera
+from refcloud.cloudmap import VoxelGrid
+from refcloud.conventions import Array, Observer
+from refcloud.march.glow import glow
+from refcloud.march.marched import Marched, marched
+from refcloud.march.mixing import PHYSICAL, Mixing
+from refcloud.metaballs import Metaballs
+from refcloud.optics import Medium, Sun
+from refcloud.refusal import complaint
+from refcloud.transport import ScatteredLight, scattered_light
+
+Scattering = Literal["single", "multiple"] | ScatteredLight
+
+
+def marched_multiple(
+    cloud: VoxelGrid | Metaballs,
+    origins: Array,
+    directions: Array,
+    *,
+    scattering: Scattering,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    ambient: Array | None,
+    mixing: Mixing = PHYSICAL,
+    tolerance: float,
+    background: Array | None = None,
+    observe: Observer | None = None,
+    camera: AnyCamera | None = None,
+) -> Marched:
+    """March rays through solved light, unchecked: the inner form of `integrate`.
+
+    Formula: int T' (sigma albedo p E T'_sun + sigma' J) rho dt + (T' - T) ambient: the
+    forward peak counts as unscattered on both ways of both parts
+
+    Parameters
+    ----------
+    cloud, origins, directions
+        As `marched`.
+    scattering
+        "multiple", or light that was solved before for this cloud.
+    suns, medium, ambient, mixing, tolerance, background, observe, camera
+        As `marched`; half of the tolerance goes to the solution.
+
+    Returns
+    -------
+    What was found; the transmittance is the true one.
+    """
+    if not isinstance(cloud, VoxelGrid):
+        expected = "a cloud map, for light that is scattered more than once"
+        raise ValueError(complaint("cloud", expected, "metaballs"))
+    if mixing != PHYSICAL:
+        expected = "none beside scattering multiple, whose light is solved without them"
+        raise ValueError(complaint("mixing", expected, "one"))
+    light = lit_for(cloud, suns, medium, ambient, scattering, tolerance)
+    if observe is not None:
+        observe("scattered light", light)
+    # 1. Light that was scattered once, exactly, its ways dimmed by sigma' alone.
+    peeled = light.sigma_t
+    kept = np.divide(
+        medium.sigma_t_rgb, peeled, out=np.ones(3), where=peeled > 0.0
+    )  # sigma / sigma'
+    grey = np.ndim(medium.sigma_t) == 0 and np.ndim(medium.albedo) == 0
+    found = marched(
+        cloud,
+        origins,
+        directions,
+        suns=tuple(
+            replace(sun, irradiance=sun.irradiance * medium.albedo_rgb * kept)
+            for sun in suns
+        ),
+        medium=Medium(
+            float(peeled[0]) if grey else peeled, 1.0, medium.g, medium.phase
+        ),
+        ambient=None,
+        mixing=mixing,
+        tolerance=0.5 * tolerance,
+        observe=observe,
+        camera=camera,
+    )
+    # 2. Light that was scattered more often.
+    radiance = found.radiance + glow(cloud, origins, directions, light, tolerance)
+    # 3. What is seen through the cloud; outside light of the forward peak goes with it.
+    through = found.transmittance ** (kept[:1] if grey else kept)
+    if ambient is not None:
+        radiance = radiance + (found.transmittance - through) * ambient
+    if background is not None:
+        radiance = radiance + through * background
+    if np.ndim(medium.sigma_t) == 0:
+        through = through[:, :1]
+    D, H, W = light.shape
+    sweeps = " + ".join(str(count) for count in light.iterations)
+    state = "" if light.converged else f"; not converged, residual {light.residual:.2g}"
+    note = f"scattered light: {sweeps} sweeps, voxels {W} x {H} x {D}{state}"
+    notes = (*found.notes, note)
+    return replace(found, radiance=radiance, transmittance=through, notes=notes)
+
+
+def lit_for(
+    cloud: VoxelGrid,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    ambient: Array | None,
+    scattering: Scattering,
+    tolerance: float,
+) -> ScatteredLight:
+    """Solve a cloud's light, or see that what was solved is of this cloud."""
+    if not isinstance(scattering, ScatteredLight):
+        return scattered_light(
+            cloud,
+            suns,
+            medium=medium,
+            sky=ambient,
+            ground=ambient,
+            tolerance=0.5 * tolerance,
+        )
+    light = scattering
+    same = (
+        (light.grid is cloud or np.array_equal(light.grid.density, cloud.density))
+        and np.array_equal(light.grid.lower, cloud.lower)
+        and np.array_equal(light.grid.upper, cloud.upper)
+        and np.array_equal(light.medium.sigma_t_rgb, medium.sigma_t_rgb)
+        and np.array_equal(light.medium.albedo_rgb, medium.albedo_rgb)
+        and (light.medium.g, light.medium.phase) == (medium.g, medium.phase)
+        and len(light.suns) == len(suns)
+        and all(
+            np.array_equal(a.direction, b.direction)
+            and np.array_equal(a.irradiance, b.irradiance)
+            for a, b in zip(light.suns, suns, strict=True)
+        )
+    )
+    if not same:
+        raise ValueError(
+            complaint(
+                "scattering",
+                "light that was solved for this cloud, medium and suns",
+                "that of another",
+                'solve it anew, or say "multiple"',
+            )
+        )
+    return light

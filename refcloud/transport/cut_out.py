@@ -1,0 +1,83 @@
+"""The part of a grid that is solved, and what it takes out of each sun's beam."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refcloud.cloudmap import VoxelGrid, cell_size
+from refcloud.conventions import Array
+from refcloud.optics import Medium, Sun
+from refcloud.refusal import complaint
+from refcloud.transport.delta_m import delta_m
+from refcloud.transport.directions import sphere_directions
+from refcloud.transport.plans import Plan
+from refcloud.transport.sunlight import cell_mean, intercepted
+from refcloud.transport.sweep import step_of
+
+SMALLEST = 4  # voxels along the longest axis that stages leave
+# Voxels along the longest axis that a plan's finest grid keeps, however thin they are:
+# with half of them shapes are lost, and five times the error.
+ENOUGH = 48
+
+
+def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
+    """Refuse optical depths that are no longer numbers."""
+    with np.errstate(over="ignore"):
+        across = float(np.sqrt(np.square(grid.upper - grid.lower).sum()))
+        largest = float(np.max(medium.sigma_t)) * float(grid.density.max()) * across
+    if not largest < 1e300:
+        expected = "an optical depth below 1e300 across the cloud"
+        raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
+
+
+def cut_out(grid: VoxelGrid, plan: Plan, sigma: float) -> tuple[Plan, VoxelGrid, int]:
+    """Cut the cloud out, with room for all halvings; count those before the plan."""
+    size = cell_size(grid)
+    occupied = np.argwhere(grid.density > 0.0)
+    if not len(occupied):
+        occupied = np.zeros((1, 3), int)
+    first = np.maximum(occupied.min(axis=0) - 1, 0)
+    last = np.minimum(occupied.max(axis=0) + 2, grid.density.shape)
+    extent = last - first
+    # As many halvings as keep voxels thin, and leave some to be swept.
+    most = max(int(np.log2(extent.max() / SMALLEST)), 0)
+    thin = float(grid.density.max()) * sigma * float(size.max())
+    spare = int(np.log2(plan.depth / thin)) if 0.0 < thin < plan.depth else 0
+    base = min(spare, max(int(np.log2(extent.max() / ENOUGH)), 0))
+    stages = tuple(s for s in plan.stages if base + s.halvings <= most)
+    room = -extent % 2 ** (base + max(s.halvings for s in stages))
+    kept = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
+    density = np.pad(grid.density[kept], [(0, int(n)) for n in room])
+    lower = grid.lower + first[::-1] * size
+    upper = lower + (extent + room)[::-1] * size
+    return replace(plan, stages=stages), VoxelGrid(density, lower, upper), base
+
+
+def beam_norms(
+    cloud: VoxelGrid,
+    columns: list[NDArray[Any]],
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    plan: Plan,
+) -> dict[float, Array]:
+    """Give the factors that make voxels take out of each beam what the cloud does."""
+    scaled = {}
+    for stage in plan.stages:
+        kind = delta_m(medium, sphere_directions(stage.directions).degree)
+        scaled[kind.forward] = float(kind.sigma_t[0])
+    sigmas = np.array(list(scaled.values()))
+    cell = cell_size(cloud)
+    near = np.nonzero(cloud.density)
+    density = cloud.density[near]
+    factors = np.ones((len(sigmas), len(suns)))
+    for s, (sun, column) in enumerate(zip(suns, columns, strict=True)):
+        path = step_of(sun.direction, cell).length
+        for k, whole in enumerate(intercepted(cloud, sun.direction, scale=sigmas)):
+            T = cell_mean(sigmas[k] * column[near], density * (sigmas[k] * path))
+            taken = sigmas[k] * float(cell.prod()) * float((density * T).sum())
+            factors[k, s] = whole / taken if taken > 0.0 else 1.0
+    return dict(zip(scaled, factors, strict=True))
