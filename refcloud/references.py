@@ -30,6 +30,7 @@ PIECES = {
     "L11": "M: isotropic against anisotropic scattering",
     "L12": "M: coloured light, channel by channel",
     "L13": "M: several lights, summed",
+    "L15": "M: the first pass is redone when a ball or a light moves",
     "N01": "M: hash of three integers",
     "N02": "C: hash of two integers and a seed",
     "N03": "S: a shuffled permutation table",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from refcloud.camera import Camera, project
 from refcloud.conventions import WHOLE_SPHERE, Array
 from refcloud.lighting import LitMetaballs, Look, sunward
+from refcloud.lighting.sunward import worth_of_light
 from refcloud.metaballs import Metaballs, axis_depth
 from refcloud.noise import uniform
 from refcloud.optics import Medium, Sun
@@ -25,6 +27,7 @@ FOOTPRINTS = {100: 67.0, 1200: 28.0, 10_000: 14.6, 100_000: 4.7}
 # Bright enough that the lit sides of the clouds come near displayed white.
 SUN = Sun(np.array([-0.5, 0.8, 0.4]), np.full(3, 8.0 * WHOLE_SPHERE))
 ALBEDO = 0.9
+MEDIUM = Medium(1.0, ALBEDO)
 # Flat colours and no erosion: what the paper draws, by Beer's law.
 FLAT = Look(
     scattering="man2003",
@@ -47,6 +50,7 @@ def eye() -> Camera:
     )
 
 
+@functools.cache
 def balls(count: int) -> Metaballs:
     """Scatter balls of depth 0.5 to 1.5 on their axes over the puffs.
 
@@ -81,6 +85,12 @@ def _in_unit_ball(k: NDArray[np.int_], seed: int) -> Array:
     return way * np.cbrt(uniform(k, 3, seed=seed + 20))[:, None]
 
 
-def lit(count: int, look: Look = FLAT) -> LitMetaballs:
+def lit(count: int, look: Look = FLAT, tolerance: float = 0.0) -> LitMetaballs:
     """Light the balls by one sun."""
-    return sunward(balls(count), (SUN,), medium=Medium(1.0, ALBEDO), look=look)
+    made = balls(count)
+    return sunward(made, (SUN,), medium=MEDIUM, look=look, tolerance=tolerance)
+
+
+def worth(count: int) -> float:
+    """Give how much a colour changes with the share of the sun that reaches a ball."""
+    return worth_of_light(balls(count), (SUN,), MEDIUM, FLAT)

@@ -42,6 +42,8 @@ class Subject:
     rate
         Name of the column of samples per unit of time, and how many of them one sample
         a nanosecond is; None for no such column.
+    rms
+        Whether a column gives the errors' root mean square beside the largest.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Subject:
     peers: tuple[str, ...] = ()
     unit: Unit = MS
     rate: tuple[str, float] | None = None
+    rms: bool = False
 
 
 def run(subject: Subject, quick: bool = False) -> list[Row]:
@@ -90,7 +93,8 @@ def table(subject: Subject, rows: list[Row]) -> str:
     unit, rate = subject.unit, subject.rate
     head = ["task", "contender", unit.name, "spread"]
     head += [rate[0]] if rate else []
-    lines = [[*head, "x rival", "error"]]
+    last = ["x rival", "error", *(["rms"] if subject.rms else [])]
+    lines = [[*head, *last]]
     for row in rows:
         timing = row.timing
         middle, least, most = (
@@ -101,6 +105,8 @@ def table(subject: Subject, rows: list[Row]) -> str:
             line.append(f"{rate[1] / timing.median:.1f}" if timing.median > 0 else "-")
         line.append("-" if row.ratio is None else f"{row.ratio:.1f}")
         line.append("-" if row.error is None else f"{row.error:.1g}")
+        if subject.rms:
+            line.append("-" if row.rms is None else f"{row.rms:.1g}")
         lines.append(line)
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
     text = [

@@ -68,6 +68,8 @@ class Row:
         How many times faster than the task's rival, None without one.
     error
         Largest distance from the reference, None without one.
+    rms
+        The root of the mean of its square, None without one.
     """
 
     task: str
@@ -75,6 +77,7 @@ class Row:
     timing: Timing
     ratio: float | None
     error: float | None
+    rms: float | None = None
 
 
 def timed(contenders: Sequence[Contender], rounds: int) -> list[Row]:
@@ -94,7 +97,7 @@ def timed(contenders: Sequence[Contender], rounds: int) -> list[Row]:
         if contender.rival
     }
     return [
-        Row(c.task, c.name, t, _ratio(rivals.get(c.task), t), _error(c))
+        Row(c.task, c.name, t, _ratio(rivals.get(c.task), t), *_errors(c))
         for c, t in zip(contenders, timings, strict=True)
     ]
 
@@ -104,11 +107,12 @@ def _ratio(rival: float | None, timing: Timing) -> float | None:
     return rival / timing.median if rival is not None and timing.median > 0 else None
 
 
-def _error(contender: Contender) -> float | None:
+def _errors(contender: Contender) -> tuple[float | None, float | None]:
     if contender.reference is None:
-        return None
+        return None, None
     exact = np.asarray(contender.reference())
-    return float(np.abs(np.asarray(contender.work()) - exact).max())
+    off = np.abs(np.asarray(contender.work()) - exact)
+    return float(off.max()), float(np.sqrt(np.mean(off * off)))
 
 
 def machine(peers: Iterable[str] = ()) -> str:

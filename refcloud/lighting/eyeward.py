@@ -23,8 +23,10 @@ from refcloud.raster.canvas import Canvas
 from refcloud.raster.tile_lists import parts
 
 # Shares of the tolerance: for balls left out as faint, and for those behind an opaque
-# front where rounding and nodes take the rest; elsewhere the rest is theirs.
-FAINT, OPAQUE = 1.0 / 16.0, 1.0 / 16.0
+# front. Nodes need most of a tolerance that is large enough for them; float32 needs
+# less; elsewhere the front has all the rest.
+FAINT, OPAQUE, OPAQUE_OF_NODES = 1.0 / 16.0, 0.5, 1.0 / 16.0
+NODES_FROM = 4e-4
 ROUNDED = 2.0**-50  # what passes less than this changes the last bits of a sum alone
 
 
@@ -104,9 +106,11 @@ def eyeward(
     # 3. Draw tile after tile, each from the front, before the background.
     # Behind pixels that let no more than this through, all together changes less than
     # that share of the tolerance: it is between 0 and the brightest, seen through them.
-    share = OPAQUE if by_products else 1.0 - FAINT
+    share = 1.0 - FAINT
+    if by_products:
+        share = OPAQUE_OF_NODES if tolerance >= NODES_FROM else OPAQUE
     least = max(share * tolerance / brightest, ROUNDED)
-    most = (1.0 - FAINT - OPAQUE) * tolerance
+    most = (1.0 - FAINT - share) * tolerance
     canvas = Canvas(camera.width, camera.height, background)
     hidden = entries = 0
     for lists in parts(flat.discs, camera.width, camera.height):
@@ -116,7 +120,7 @@ def eyeward(
         else:
             found = shaded_tiles(lists, seen, drawn, shading, least)
         canvas.paint(lists, flat.groups, found.light, found.clear)
-        hidden += found.unseen
+        hidden += int(found.unseen.sum())
         entries += len(lists.ball)
     if hidden:
         what = "balls of a tile behind opaque ones"

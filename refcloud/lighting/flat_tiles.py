@@ -68,12 +68,12 @@ class Drawn(NamedTuple):
     clear
         Share of the background that passes, by group, shape (T, G, S).
     unseen
-        List entries behind an opaque front.
+        List entries behind an opaque front, shape (T,).
     """
 
     light: Floats
     clear: Floats
-    unseen: int
+    unseen: Whole
 
 
 def flat_balls(seen: Seen, drawn: Whole) -> Flat:
@@ -114,7 +114,7 @@ def drawn_at(
     count, size, look = len(lists.count), len(places[0]), flat.look
     light = np.empty((count, 3, size), dtype)
     clear = np.empty((count, len(flat.groups), size), dtype)
-    unseen = 0
+    unseen = np.zeros(count, np.intp)
     for group, channels in enumerate(flat.groups):
         tau = flat.tau[group]
         found = composite(
@@ -167,59 +167,48 @@ def certified_tiles(
     What was drawn, and the rows of the report.
     """
     share = most if most < 2.0 * MOST_FLOAT32 else MOST_FLOAT32
-    digits = share / brightest  # what rounding may change of one ball's opacity
-    if most < 0.5 * LEAST_FLOAT32 or not _fits(flat, digits):
+    # What rounding may change of one ball's opacity at the worst; the sample tells.
+    digits = 4.0 * share / brightest
+    if most < 0.4 * LEAST_FLOAT32 or not _fits(flat, digits):
         return exact_tiles(lists, flat, least), []
     # 1. Tiles of wide balls at their nodes, those pass whose last terms are small.
+    how = least, np.float32, digits
     count = len(lists.count)
-    light = np.empty((count, 3, PIXELS), np.float32)
-    clear = np.empty((count, len(flat.groups), PIXELS), np.float32)
-    deepest = np.maximum(np.max(flat.tau, axis=0), 1.0)
-    rise = (flat.discs.radius / np.sqrt(deepest))[lists.ball]
-    rise = np.minimum.reduceat(rise, lists.first)  # the steepest of each tile
+    drawn = Drawn(
+        np.empty((count, 3, PIXELS), np.float32),
+        np.empty((count, len(flat.groups), PIXELS), np.float32),
+        np.zeros(count, np.intp),
+    )
+    rise = _rise(lists, flat)
     open_ = np.ones(count, dtype=bool)
-    unseen = saved = 0
+    saved = 0
     for level in map(nodes, LEVELS):
         tried = np.flatnonzero(open_ & _promising(level, rise, most - share))
         if not len(tried):
             continue
-        found = drawn_at(
-            lists.chosen(tried),
-            flat,
-            level.places,
-            least,
-            np.float32,
-            share / brightest,
-        )
+        found = drawn_at(lists.chosen(tried), flat, level.places, *how)
         error = _of_picture(
             level.error_of(found.light), level.error_of(found.clear), behind
         )
-        passed = np.flatnonzero(error <= most - share)
-        light[tried[passed]] = level.at_pixels(found.light[passed])
-        clear[tried[passed]] = level.at_pixels(found.clear[passed])
-        open_[tried[passed]] = False
+        good = np.flatnonzero(error <= most - share)
+        passed = tried[good]
+        drawn.light[passed] = level.at_pixels(found.light[good])
+        drawn.clear[passed] = level.at_pixels(found.clear[good])
+        drawn.unseen[passed] = found.unseen[good]
+        open_[passed] = False
         saved += len(passed) * (PIXELS - level.n**2)
-        unseen += found.unseen
     # 2. All others at their pixels.
-    rest = np.flatnonzero(open_)
-    if len(rest):
-        found = drawn_at(
-            lists.chosen(rest),
-            flat,
-            pixel_places(),
-            least,
-            np.float32,
-            share / brightest,
-        )
-        light[rest], clear[rest] = found.light, found.clear
-        unseen += found.unseen
-    drawn = Drawn(light, clear, unseen)
+    if open_.all():
+        drawn = drawn_at(lists, flat, pixel_places(), *how)
+    elif open_.any():
+        rest = np.flatnonzero(open_)
+        found = drawn_at(lists.chosen(rest), flat, pixel_places(), *how)
+        for whole, part in zip(drawn, found, strict=True):
+            whole[rest] = part
     # 3. The sample decides whether it counts.
     cut = least * brightest  # what an opaque front may hide is counted apart
-    whole, between = (
-        max(error - cut, 0.0)
-        for error in _sampled_error(lists, flat, drawn, open_, behind)
-    )
+    sampled = _sampled_error(lists, flat, drawn, open_, behind)
+    whole, between = (max(error - cut, 0.0) for error in sampled)
     if MARGIN_FLOAT32 * whole > share or MARGIN_NODES * between > most:
         return exact_tiles(lists, flat, least), []
     rows = [Skipped("eye", "tiles in double precision", count, count, share)]
@@ -244,6 +233,13 @@ def _fits(flat: Flat, most: float) -> bool:
         <= 0.5 * len(tau)
         for tau in flat.tau
     )
+
+
+def _rise(lists: TileLists, flat: Flat) -> Array:
+    """Give the pixels over which the steepest ball of each tile becomes opaque."""
+    deepest = np.maximum(np.max(flat.tau, axis=0), 1.0)
+    rise = (flat.discs.radius / np.sqrt(deepest))[lists.ball]
+    return np.minimum.reduceat(rise, lists.first)
 
 
 def _promising(level: Nodes, rise: Array, most: float) -> np.ndarray:

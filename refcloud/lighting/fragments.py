@@ -57,6 +57,12 @@ class Fragments:
     pixel: Whole
 
 
+def fragments_per_ball(view: LightView) -> float:
+    """Estimate how many pixels a ball covers, on the mean; no more than the buffer."""
+    square = np.minimum(np.pi * np.square(view.radius), float(view.side) ** 2)
+    return float(square.mean()) if len(square) else 0.0
+
+
 def fragments(view: LightView, look: Look, dtype: type) -> Fragments | None:
     """List the fragments of a light's view; None where there are too many.
 

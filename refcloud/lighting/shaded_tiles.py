@@ -79,7 +79,7 @@ def shaded_tiles(
     count = len(lists.count)
     light = np.zeros((count, 3, PIXELS))
     clear = np.ones((count, len(groups), PIXELS))
-    unseen = 0
+    unseen = np.zeros(count, np.intp)
     ranked = np.argsort(-lists.count, kind="stable")  # lists of like length together
     for begin in range(0, count, TILES):
         batch = ranked[begin : begin + TILES]
@@ -90,7 +90,7 @@ def shaded_tiles(
             live = batch[: np.count_nonzero(lists.count[batch] > slot)]
             open_ = passed[:, : len(live) * PIXELS].max(axis=0) > least
             hidden = ~open_.reshape(-1, PIXELS).any(axis=1)
-            unseen += int(np.count_nonzero(hidden))
+            unseen[live] += hidden
             ball = drawn[lists.ball[lists.first[live] + slot]]
             found = _samples(lists, live, ball, seen, shading, open_)
             if not len(found.at):

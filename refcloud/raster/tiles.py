@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from refcloud.conventions import Array
 from refcloud.raster.footprint import Law, Name
 from refcloud.raster.quadratics import FORMS, Floats, Quadratics
-from refcloud.raster.tile_lists import SIDE, Discs, TileLists
+from refcloud.raster.tile_lists import SIDE, Discs, TileLists, Whole
 
 SAMPLES = 1 << 17  # composited at a time: about what the processor's cache holds
 # Of these, list slots of as many tiles as are at work; few of them at least, so that
@@ -55,12 +55,13 @@ class Result:
     clear
         Share of the background that passes all of them, shape (T, S).
     unseen
-        List entries that were not drawn, since they lie behind an opaque front.
+        Entries of each list that were not drawn, since they lie behind an opaque
+        front, shape (T,).
     """
 
     light: Floats
     clear: Floats
-    unseen: int
+    unseen: Whole
 
 
 def composite(
@@ -105,14 +106,17 @@ def composite(
     deep = np.minimum(tau, DEEPEST[dtype])
     strength = deep * PER_E if beer else -np.expm1(-tau)
     footprints = Quadratics(lists, discs, strength, FORMS[name], places, direct, dtype)
-    hue = np.concatenate([colours, np.zeros((1, colours.shape[1]))]).astype(dtype)
+    # In rows of memory, whatever the order of `colours`: they are looked up by rows.
+    hue = np.zeros((len(tau) + 1, colours.shape[1]), dtype)
+    hue[:-1] = colours
 
     count, channels, size = len(lists.count), colours.shape[1], len(places[0])
     light = np.empty((count, channels, size), dtype)
     clear = np.empty((count, size), dtype)
-    unseen = 0
-    together = max(SAMPLES // (LEAST_SLOTS * size), 1)
-    room = SAMPLES + together * size
+    unseen = np.zeros(count, np.intp)
+    together = max(min(SAMPLES // (LEAST_SLOTS * size), count), 1)
+    longest = min(int(lists.count.max(initial=0)), MOST_SLOTS)
+    room = min(SAMPLES, longest * together * size) + together * size
     space, zeros = np.empty((2, room), dtype), np.zeros(room, dtype)
     ranked = np.argsort(-lists.count, kind="stable")  # lists of like length together
     for begin in range(0, count, together):
@@ -166,7 +170,7 @@ def composite(
             left -= slots
             done = (left <= 0) | (through.max(axis=1) <= least)
             if 4 * np.count_nonzero(done) >= n:
-                unseen += int(np.maximum(left[done], 0).sum())
+                unseen[live[done]] = np.maximum(left[done], 0)
                 light[live[done]] = added[done]
                 clear[live[done]] = through[done]
                 kept = ~done

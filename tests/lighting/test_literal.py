@@ -42,7 +42,7 @@ def differ(lit, camera, background, haze, seed) -> float:
     return float(np.abs(found - expected).max() / max(1.0, np.abs(expected).max()))
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(clouds(12), suns_of(), media, looks, eyes, hazes, seeds, st.booleans())
 def test_it_is_the_literal_loop(
     balls, suns, medium, look, camera, haze, seed, solid

@@ -14,6 +14,7 @@ from twins.lighting import clouds, looks, media, scattered_balls, seeds, suns_of
 from refcloud.lighting import ball_colours, fragments, sunward
 from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.fragments import Fragments
+from refcloud.lighting.in_turn import carried_in_turn
 from refcloud.lighting.lightview import light_view
 from refcloud.lighting.literal_light import carried_literally
 from refcloud.lighting.sweeps import carried
@@ -38,7 +39,7 @@ def both(balls, sun, look, side, most=0.0, dtype=np.float64):
 
 
 @pytest.mark.parametrize("readback", readbacks)
-@settings(max_examples=40)
+@settings(max_examples=12)
 @given(clouds(30), directions, looks, st.sampled_from([1, 7, 40]))
 def test_sweeps_are_the_literal_loop(readback, balls, sun, look, side) -> None:
     if not len(balls):
@@ -52,7 +53,7 @@ def test_sweeps_are_the_literal_loop(readback, balls, sun, look, side) -> None:
     assert (untouched == 1.0).all()
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(
     seeds,
     st.integers(2, 60),
@@ -98,7 +99,7 @@ def test_a_chain_longer_than_any_list_is_carried_to_its_end() -> None:
     np.testing.assert_allclose(swept.reached, literal, rtol=0.0, atol=CLOSE)
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(clouds(20), suns_of(), media, looks, st.floats(-4, -0.5).map(lambda p: 10.0**p))
 def test_a_tolerance_of_light_holds_for_every_colour(
     balls, suns, medium, look, tolerance
@@ -111,6 +112,23 @@ def test_a_tolerance_of_light_holds_for_every_colour(
     assert np.abs(colours[0] - colours[1]).max(initial=0.0) <= tolerance
     assert not exact.skipped
     assert all(row.bound <= tolerance for row in found.skipped)
+
+
+@pytest.mark.parametrize("readback", readbacks)
+@settings(max_examples=8)
+@given(clouds(20), directions, looks, st.sampled_from([1, 7, 40]))
+def test_one_channel_in_turn_is_the_literal_loop(
+    readback, balls, sun, look, side
+) -> None:
+    if not len(balls):
+        return
+    rules = dataclasses.replace(look, readback=readback)
+    view = light_view(balls, sun.direction, side)
+    how = ball_depths(balls, 1.5, rules), 0.9, rules, rules.forward
+    reached, buffer = carried_in_turn(view, *how)
+    literal, drawn = carried_literally(view, *how)
+    np.testing.assert_allclose(reached, literal, rtol=0.0, atol=CLOSE)
+    np.testing.assert_allclose(buffer, drawn.pixels[..., 0], rtol=0.0, atol=CLOSE)
 
 
 def test_a_view_of_too_many_fragments_is_carried_ball_after_ball(monkeypatch) -> None:

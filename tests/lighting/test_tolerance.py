@@ -132,7 +132,7 @@ smooth_looks = st.builds(
 )
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(
     seeds,
     st.integers(1, 150),

@@ -36,7 +36,7 @@ def test_no_pixel_lies_beyond_the_nodes(n: int) -> None:
     assert x.max() == y.max() > SIDE / 2 - 0.5
 
 
-@settings(max_examples=30)
+@settings(max_examples=20)
 @given(
     st.integers(0, 2**63 - 1),
     st.integers(1, 60),
