@@ -31,7 +31,6 @@ from refcloud.optics import (
     coupling_man2003,
     largest_steady_tau,
 )
-from refcloud.raster import Framebuffer
 from refcloud.raster.footprint import footprint_of, patch_of
 from refcloud.raster.splat import mean_of
 
@@ -91,17 +90,18 @@ def sunward(
 
 def carried_on_opengl(
     view: LightView, tau: Array, albedo: float, look: Look, forward: float
-) -> tuple[Array, Framebuffer]:
+) -> tuple[Array, Array]:
     """Run pass 1 for one light and one colour channel, unchecked.
 
     Parameters
     ----------
     view, tau, albedo, look, forward
-        As `refcloud.lighting.literal_light.carried_literally`.
+        As `refcloud.lighting.in_turn.carried_in_turn`.
 
     Returns
     -------
-    The share of the light that reaches each ball, shape (N,), and the framebuffer.
+    The share of the light that reaches each ball, shape (N,), and the framebuffer's
+    light, its rows one after the other.
     """
     on_axis = handed_on(look, albedo, forward)(tau)  # refuses before anything is drawn
     kernel, side = view.balls.kernel, view.side
@@ -129,7 +129,7 @@ def carried_on_opengl(
             set_uniforms(quads, ball_0=int(k), light=float(reached[k]))
             draw(quads, 1)
     everything = slice(0, side), slice(0, side)
-    return reached, Framebuffer(read_pixels(target, *everything))
+    return reached, read_pixels(target, *everything)[..., 0].ravel()
 
 
 class _Pixels:

