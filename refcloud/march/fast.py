@@ -20,13 +20,15 @@ from refcloud.march.steps import reaching
 from refcloud.optics import Medium, Sun
 from refcloud.transport import sun_depths
 
+Scale = Literal[1, 2]
+
 
 @dataclass(frozen=True)
 class Setting:
     """How finely a march looks: cells in a slab, samples of light per cell."""
 
     thickness: float
-    scale: Literal[1, 2]
+    scale: Scale
 
 
 def fast(
@@ -97,7 +99,7 @@ def light_volumes(
     suns: tuple[Sun, ...],
     medium: Medium,
     mixing: Mixing,
-    scale: Literal[1, 2],
+    scale: Scale,
 ) -> list[NDArray[np.float32]]:
     """Give the light that reaches every sample, of each sun at each extinction.
 
@@ -181,7 +183,7 @@ def march_slabs(
     suns: tuple[Sun, ...],
     medium: Medium,
     thickness: float = 2.0,
-    scale: Literal[1, 2] = 1,
+    scale: Scale = 1,
     least: float = 1e-4,
 ) -> tuple[Array, Array]:
     """March any rays through slabs of one setting, unchecked, light volume included.

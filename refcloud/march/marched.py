@@ -12,9 +12,10 @@ from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.march.balls import exact_balls
 from refcloud.march.cells import lattice
-from refcloud.march.certified import Task, completed, to_tolerance
+from refcloud.march.certified import to_tolerance
 from refcloud.march.light import sources
 from refcloud.march.mixing import Mixing
+from refcloud.march.task import Task, completed
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
