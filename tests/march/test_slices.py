@@ -19,7 +19,7 @@ from refcloud.march.view import view_of
 from refcloud.optics import Medium, Sun
 from refcloud.transport import sun_depths
 
-SIZE = {"width": 28, "height": 21}
+SIZE = {"width": 24, "height": 18}
 CLOUD, FILLED = cloud(40), cloud(40, (1.2, 0.6, 1.0), filled=True)
 SUN = Sun([-0.5, 0.7, 0.4], [3.0, 2.0, 1.0])
 GRAY = Medium(6.0, phase="isotropic")
@@ -66,6 +66,7 @@ def test_near_the_exact_integral(name: str, scale: int, most: float) -> None:
     assert np.abs(through - clear).max() < 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["front", "left", "parallel"])
 def test_more_samples_come_nearer(name: str) -> None:
     errors = []
@@ -76,6 +77,7 @@ def test_more_samples_come_nearer(name: str) -> None:
     assert errors[-1] < 6e-4  # worst seen .00037
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["front", "left", "within"])
 def test_boxes_that_are_filled_to_the_border(name: str) -> None:
     (radiance, through), (expected, clear) = both(FILLED, CAMERAS[name])
@@ -236,6 +238,7 @@ print(hashlib.sha256(L.tobytes() + T.tobytes()).hexdigest())
 """
 
 
+@pytest.mark.slow
 def test_the_same_bits_whatever_the_number_of_threads() -> None:
     bits = {
         subprocess.run(
