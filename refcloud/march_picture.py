@@ -17,13 +17,14 @@ from refcloud.lighting.colours import clearness
 from refcloud.march import Mixing
 from refcloud.march.marched import marched
 from refcloud.march.multiple import Scattering, marched_multiple
+from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 
 ONCE = "marched: light that is scattered more than once is left out"
 
 
 def draw_march(
-    cloud: VoxelGrid,
+    cloud: VoxelGrid | Metaballs,
     camera: AnyCamera,
     suns: tuple[Sun, ...],
     background: Any,
@@ -41,7 +42,7 @@ def draw_march(
     Parameters
     ----------
     cloud
-        A cloud map.
+        A cloud map, or metaballs.
     camera
         The eye.
     suns
@@ -81,6 +82,7 @@ def draw_march(
         tolerance=tolerance,
         background=None if behind is None or haze else behind.reshape(-1, 3),
         observe=observe,
+        camera=camera,
     )
     size = (camera.height, camera.width)
     radiance = found.radiance.reshape(*size, 3)
@@ -97,6 +99,12 @@ def draw_march(
     return Picture(radiance, alpha, found.skipped, seconds, (*notes, *found.notes))
 
 
-def middle_of(cloud: VoxelGrid) -> Array:
-    """Give the middle of a cloud's box, shape (3,)."""
-    return 0.5 * cloud.lower + 0.5 * cloud.upper
+def middle_of(cloud: VoxelGrid | Metaballs) -> Array:
+    """Give the middle of a cloud's box, shape (3,); of no ball the origin."""
+    if isinstance(cloud, VoxelGrid):
+        return 0.5 * cloud.lower + 0.5 * cloud.upper
+    if not len(cloud):
+        return np.zeros(3)
+    reach = cloud.radii[:, None]
+    lower, upper = (cloud.centers - reach).min(axis=0), (cloud.centers + reach).max(0)
+    return 0.5 * lower + 0.5 * upper

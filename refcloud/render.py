@@ -170,8 +170,6 @@ def render(
     behind = Sky() if background is None else background
     lights = (SUN,) if suns is None else suns
     if march:
-        if not isinstance(drawn, VoxelGrid):
-            raise ValueError(complaint("cloud", "a cloud map to march", "metaballs"))
         picture = draw_march(
             drawn,
             camera,

@@ -12,27 +12,31 @@ the risk that is left is small and is hunted by a test with generated scenes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
-
 import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer, Skipped
-from refcloud.march.cells import Lattice, cropped, lattice
-from refcloud.march.exact import exact
-from refcloud.march.fast import Setting, fast, light_volumes
+from refcloud.march.cells import cropped, lattice
+from refcloud.march.fast import (
+    Scale,
+    Setting,
+    fast,
+    light_volumes,
+)
 from refcloud.march.gather import Counts
-from refcloud.march.mixing import Mixing
+from refcloud.march.mixing import PHYSICAL
 from refcloud.march.quadrature import columns
+from refcloud.march.sliced import SLICINGS, Slicing, sliced
+from refcloud.march.task import Task
 from refcloud.noise import uniform
-from refcloud.optics import Medium, Sun
+from refcloud.transport import sun_depths
 
 CHECKED = 256  # rays of the sample
 # Gauss points of a piece on checked rays: two are off by less than a hundredth of the
 # least tolerance that slabs can meet.
 CHECKED_POINTS = 2
+COARSE = 1e-3  # tolerances at which two points serve for all rays too
 # On the largest error of the sample: what other rays may have beyond it.
 MARGIN = 2.0
 # Below it single precision shows.
@@ -48,99 +52,6 @@ SETTINGS = (
 )
 # Share of the tolerance that what lies behind opaque fronts may take.
 HIDDEN = 0.05
-
-
-@dataclass(frozen=True)
-class Task:
-    """Rays to march, and all that their light depends on.
-
-    Attributes
-    ----------
-    cloud, grid
-        The cloud map, and its lattice.
-    origins, directions
-        Shape (N, 3), scene units; unit vectors.
-    suns, lit
-        The lights, and what each sends along each ray, shape (S, N, 3).
-    medium, mixing
-        Extinction, and factors on optical depths.
-    ambient
-        Radiance from all sides, shape (3,).
-    background
-        What lies behind each ray, shape (N, 3); None where alpha is wanted.
-    """
-
-    cloud: VoxelGrid
-    grid: Lattice
-    origins: Array
-    directions: Array
-    suns: tuple[Sun, ...]
-    lit: Array
-    medium: Medium
-    mixing: Mixing
-    ambient: Array
-    background: Array | None
-
-    def taken(self, which: NDArray[np.intp]) -> Task:
-        """Keep some rays."""
-        behind = None if self.background is None else self.background[which]
-        return Task(
-            self.cloud,
-            self.grid,
-            self.origins[which],
-            self.directions[which],
-            self.suns,
-            self.lit[:, which],
-            self.medium,
-            self.mixing,
-            self.ambient,
-            behind,
-        )
-
-    @property
-    def brightest(self) -> float:
-        """Give what a ray can show at most, at least white."""
-        light = float(self.lit.sum(axis=0).max(initial=0.0)) + self.ambient.max()
-        behind = 1.0 if self.background is None else self.background.max(initial=1.0)
-        return max(light, float(behind), 1.0)
-
-    def seen(self, radiance: Array, column: Array) -> tuple[Array, Array]:
-        """Complete what rays show.
-
-        Returns
-        -------
-        Colours of shape (N, 3), and transmittance of shape (N, 1), or (N, 3) where
-        sigma_t is RGB.
-        """
-        k = self.mixing.light_absorption_through_cloud
-        tau = column[:, None] * (k * np.atleast_1d(self.medium.sigma_t))
-        through = np.exp(-tau)
-        light = radiance + self.medium.albedo_rgb * self.ambient * -np.expm1(-tau)
-        if self.background is not None:
-            light = light + through * self.background
-        return light, through
-
-    def error(self, found: tuple[Array, Array], expected: tuple[Array, Array]) -> float:
-        """Give the largest difference of a channel; alpha is one where it is shown."""
-        a, b = self.seen(*found), self.seen(*expected)
-        worst = float(np.abs(a[0] - b[0]).max(initial=0.0))
-        if self.background is None:
-            worst = max(worst, float(np.abs(a[1] - b[1]).max(initial=0.0)))
-        return worst
-
-    def exact(self, least: float = 0.0, points: int = 4) -> tuple[Array, Array]:
-        """Integrate the rays; see `refcloud.march.exact`."""
-        return exact(
-            self.grid,
-            self.origins,
-            self.directions,
-            self.suns,
-            self.lit,
-            self.medium,
-            self.mixing,
-            least,
-            points,
-        )
 
 
 def to_tolerance(
@@ -174,10 +85,34 @@ def to_tolerance(
     expected = some.exact(0.1 * least, CHECKED_POINTS)
     watch("checked rays", sample)
 
-    # 2. Settings in turn, on the sample.
+    # 2. Slices, which march all rays of a camera or none.
     inner = cropped(task.cloud)
+    tried: dict[Slicing, float] = {}
+    for slicing in SLICINGS if task.camera and task.mixing == PHYSICAL else ():
+        found = by_slices(task, inner, slicing)
+        if found is None:
+            break
+        tried[slicing] = some.error((found[0][sample], found[1][sample]), expected)
+        if MARGIN * tried[slicing] <= tolerance:
+            watch("errors of slices", tried)
+            row = Skipped(
+                "march",
+                "exact rays",
+                len(found[1]),
+                len(found[1]),
+                MARGIN * tried[slicing],
+            )
+            note = (
+                f"march: slices, {slicing.finer:g} samples of the image and"
+                f" {slicing.scale} of light per cell; off by {tried[slicing]:.2g} at"
+                f" most on {len(sample)} checked rays"
+            )
+            return *found, (row,), (note,)
+    watch("errors of slices", tried)
+
+    # 3. Settings of slabs in turn, on the sample.
     small = lattice(inner)
-    lights: dict[Literal[1, 2], list[NDArray[np.float32]]] = {}
+    lights: dict[Scale, list[NDArray[np.float32]]] = {}
 
     def march(rays: Task, setting: Setting, counts: Counts) -> tuple[Array, Array]:
         if setting.scale not in lights:
@@ -206,10 +141,11 @@ def to_tolerance(
             break
     watch("errors of settings", errors)
 
-    # 3. All rays, with the one that passed.
+    # 4. All rays, with the one that passed.
     setting, error = next(reversed(errors.items()))
     if MARGIN * error > tolerance:
-        radiance, column = task.exact(least)
+        points = CHECKED_POINTS if tolerance >= COARSE else 4
+        radiance, column = task.exact(least, points)
         note = f"march: exact, since slabs were off by {error:.2g} on the checked rays"
         return radiance, column, (), (note,)
     counts = Counts()
@@ -230,6 +166,26 @@ def to_tolerance(
         f" per cell; off by {error:.2g} at most on {len(sample)} checked rays"
     )
     return radiance, column, rows, (note,)
+
+
+def by_slices(
+    task: Task, cloud: VoxelGrid, slicing: Slicing
+) -> tuple[Array, Array] | None:
+    """March a camera's rays by slices; None where they cannot serve."""
+    if task.camera is None:
+        return None
+    depths = [
+        sun_depths(cloud, sun.direction, scale=slicing.scale, dtype="float32")
+        for sun in task.suns
+    ]
+    return sliced(
+        cloud,
+        task.camera,
+        suns=task.suns,
+        medium=task.medium,
+        slicing=slicing,
+        depths=depths,
+    )
 
 
 def chosen_rays(task: Task) -> NDArray[np.intp]:

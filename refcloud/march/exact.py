@@ -8,6 +8,9 @@ points of a product of exponentials: pieces are cut until that is smooth.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 
 from refcloud.conventions import Array
@@ -30,6 +33,28 @@ THICKEST = 0.5
 # Optical depth behind which nothing shows: exp(-41) is below a last bit of white.
 DEEPEST = 41.0
 HALVINGS = 50  # of a piece, to find where an optical depth is reached
+
+
+@dataclass(frozen=True)
+class Points:
+    """Gauss points on pieces of rays.
+
+    Attributes
+    ----------
+    ray
+        Which ray a piece belongs to, ascending, shape (P,).
+    near
+        Columns of density between the eye and each point, shape (P, K).
+    amount
+        Columns of density that each point stands for, shape (P, K).
+    places
+        Where they are, shape (P, K, 3), scene units.
+    """
+
+    ray: Numbers
+    near: Array
+    amount: Array
+    places: Array
 
 
 def exact(
@@ -122,18 +147,60 @@ def _some(
     amount = density_at(pieces, shares) * (length * weights)  # (P, points)
     t = pieces.start[:, None] + length * shares
     places = origins[pieces.ray, None] + t[..., None] * directions[pieces.ray, None]
+    found = scattered(
+        Points(pieces.ray, near, amount, places),
+        count,
+        lambda points, toward: columns(grid, points, toward),
+        suns,
+        lit,
+        medium,
+        mixing,
+    )
+    return found, column
+
+
+def scattered(
+    points: Points,
+    count: int,
+    columns_to: Callable[[Array, Array], Array],
+    suns: tuple[Sun, ...],
+    lit: Array,
+    medium: Medium,
+    mixing: Mixing,
+) -> Array:
+    """Sum what points scatter toward the eye.
+
+    Parameters
+    ----------
+    points
+        Where light is looked for.
+    count
+        Number of rays N.
+    columns_to
+        Gives columns of density from places (M, 3) on, in one direction.
+    suns, lit, medium, mixing
+        As `exact`.
+
+    Returns
+    -------
+    Radiance, shape (N, 3).
+    """
     radiance = np.zeros((count, 3))
+    sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
+    eyeward = mixing.light_absorption_through_cloud * sigma_t
     for sun, source in zip(suns, lit, strict=True):
         if not source.any():
             continue
-        far = columns(grid, places.reshape(-1, 3), sun.direction).reshape(t.shape)
+        far = columns_to(points.places.reshape(-1, 3), sun.direction)
+        far = far.reshape(points.near.shape)
         for channel, sigma in enumerate(sigma_t):
-            shown = np.exp(-eyeward[channel] * near) * reaching(sigma * far, mixing)
-            scattered = sigma * (amount * shown).sum(axis=1)
-            whole = per_ray(pieces.ray, scattered, count)
+            shown = np.exp(-eyeward[channel] * points.near)
+            shown *= reaching(sigma * far, mixing)
+            amounts = sigma * (points.amount * shown).sum(axis=1)
+            whole = per_ray(points.ray, amounts, count)
             channels = slice(None) if len(sigma_t) == 1 else [channel]
             radiance[:, channels] += source[:, channels] * whole[:, None]
-    return radiance, column
+    return radiance
 
 
 def taken(pieces: Pieces, which: Numbers) -> Pieces:

@@ -10,14 +10,17 @@ from numpy.typing import NDArray
 
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array
-from refcloud.march.cells import Lattice
+from refcloud.march.cells import Lattice, cropped, lattice
 from refcloud.march.gather import BLOCK, Counts, Slabs, gather
+from refcloud.march.light import sources
 from refcloud.march.lines import STEEPEST, Frame, as_lines, by_frame
-from refcloud.march.mixing import Mixing
+from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.march.planes import planes
 from refcloud.march.steps import reaching
 from refcloud.optics import Medium, Sun
 from refcloud.transport import sun_depths
+
+Scale = Literal[1, 2]
 
 
 @dataclass(frozen=True)
@@ -25,7 +28,7 @@ class Setting:
     """How finely a march looks: cells in a slab, samples of light per cell."""
 
     thickness: float
-    scale: Literal[1, 2]
+    scale: Scale
 
 
 def fast(
@@ -96,7 +99,7 @@ def light_volumes(
     suns: tuple[Sun, ...],
     medium: Medium,
     mixing: Mixing,
-    scale: Literal[1, 2],
+    scale: Scale,
 ) -> list[NDArray[np.float32]]:
     """Give the light that reaches every sample, of each sun at each extinction.
 
@@ -170,3 +173,51 @@ def dilated(marked: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
             wide[tuple(high)] |= marked[tuple(low)]
         marked = wide
     return marked
+
+
+def march_slabs(
+    cloud: VoxelGrid,
+    origins: Array,
+    directions: Array,
+    *,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    thickness: float = 2.0,
+    scale: Scale = 1,
+    least: float = 1e-4,
+) -> tuple[Array, Array]:
+    """March any rays through slabs of one setting, unchecked, light volume included.
+
+    Parameters
+    ----------
+    cloud
+        The cloud map.
+    origins, directions
+        Shape (N, 3), scene units; unit vectors.
+    suns, medium
+        The lights, and what the cloud is made of.
+    thickness, scale
+        Cells in a slab, and samples of light per cell.
+    least
+        Transmittance below which a ray is dropped.
+
+    Returns
+    -------
+    Radiance of shape (N, 3), and columns of density of shape (N,).
+    """
+    inner = cropped(cloud)
+    setting = Setting(thickness, scale)
+    return fast(
+        inner,
+        lattice(inner),
+        origins,
+        directions,
+        suns=suns,
+        lit=sources(suns, medium, directions=directions),
+        medium=medium,
+        mixing=PHYSICAL,
+        setting=setting,
+        least=least,
+        counts=Counts(),
+        lights=light_volumes(inner, suns, medium, PHYSICAL, scale),
+    )

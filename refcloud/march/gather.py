@@ -18,7 +18,7 @@ from refcloud.march.planes import RIM, Planes, Singles, looked_up
 
 RAYS = 4096  # at a time: tables that stay in the cache
 BLOCK = 4  # slabs that are tested for emptiness at once
-STRETCH = 8  # blocks after which rays that have gone opaque are dropped
+STRETCH = 32  # blocks after which rays that have gone opaque are dropped
 
 
 @dataclass

@@ -14,13 +14,14 @@ from refcloud.march.marched import marched
 from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.march.multiple import Scattering, marched_multiple
 from refcloud.march.rays import as_rays, shaped
+from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 
 
 @checked
 def integrate(
-    cloud: VoxelGrid,
+    cloud: VoxelGrid | Metaballs,
     origins: Annotated[Array, Shape("...", 3)],
     directions: Annotated[Array, Shape("...", 3)],
     *,
@@ -41,7 +42,7 @@ def integrate(
     Parameters
     ----------
     cloud
-        The cloud map.
+        A cloud map, or metaballs, whose chords are known in closed form.
     origins, directions
         Of the rays, shape (..., 3) each, scene units; directions of any length but 0.
         They broadcast.
@@ -51,7 +52,7 @@ def integrate(
         What the cloud is made of.
     tolerance
         Largest error of a channel that savings may make; 0 is a quadrature in every
-        space between voxel centres.
+        space between voxel centres. Metaballs are exact at any.
     background
         What lies behind, linear RGB, one colour or shape (..., 3); None for nothing.
     ambient

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 
+from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Observer, Skipped
+from refcloud.march.balls import exact_balls
 from refcloud.march.cells import lattice
-from refcloud.march.certified import Task, to_tolerance
+from refcloud.march.certified import to_tolerance
 from refcloud.march.light import sources
 from refcloud.march.mixing import Mixing
+from refcloud.march.task import Task, completed
+from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 
 # Optical depth of one voxel above which the answer of `tolerance=0` itself is off by
 # more than a ten-thousandth of white: shadows are sharper than the Gauss points.
 STEEPEST = 3.0
+BOUNDED = 1e300  # optical depths: their sums stay numbers
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,7 @@ class Marched:
 
 
 def marched(
-    cloud: VoxelGrid,
+    cloud: VoxelGrid | Metaballs,
     origins: Array,
     directions: Array,
     *,
@@ -52,6 +58,7 @@ def marched(
     tolerance: float,
     background: Array | None = None,
     observe: Observer | None = None,
+    camera: AnyCamera | None = None,
 ) -> Marched:
     """March rays, unchecked: the inner form of `integrate`.
 
@@ -65,11 +72,17 @@ def marched(
         As `integrate`.
     background
         What lies behind each ray, shape (N, 3); None for nothing.
+    camera
+        Whose rays they are, row by row; None for any rays.
 
     Returns
     -------
     What was found.
     """
+    if isinstance(cloud, Metaballs):
+        return _balls_marched(
+            cloud, origins, directions, suns, medium, ambient, mixing, background
+        )
     refuse_unbounded(cloud, medium)
     task = Task(
         cloud,
@@ -82,13 +95,38 @@ def marched(
         mixing,
         np.zeros(3) if ambient is None else ambient,
         background,
+        camera,
     )
     if tolerance > 0.0:
         radiance, column, rows, notes = to_tolerance(task, tolerance, observe)
     else:
         (radiance, column), rows, notes = task.exact(), (), ()
-    seen, through = task.seen(radiance, column)
+    seen, through = completed(
+        radiance, column, medium, mixing, task.ambient, background
+    )
     return Marched(seen, through, rows, notes + steep_note(cloud, medium))
+
+
+def _balls_marched(
+    balls: Metaballs,
+    origins: Array,
+    directions: Array,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    ambient: Array | None,
+    mixing: Mixing,
+    background: Array | None,
+) -> Marched:
+    """March metaballs: exact at any tolerance."""
+    with np.errstate(over="ignore"):
+        whole = float((balls.densities * balls.radii).sum(initial=0.0))
+        depth = float(np.max(medium.sigma_t) * np.float64(whole))
+    if not depth < BOUNDED:
+        _refuse_depth()
+    lit = sources(suns, medium, directions=directions)
+    found = exact_balls(balls, origins, directions, suns, lit, medium, mixing)
+    light = np.zeros(3) if ambient is None else ambient
+    return Marched(*completed(*found, medium, mixing, light, background))
 
 
 def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
@@ -97,9 +135,13 @@ def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
     with np.errstate(over="ignore"):
         across = np.sqrt(np.square(grid.upper - grid.lower).sum())
         largest = float(np.max(medium.sigma_t)) * densest * across
-    if not largest < 1e300:
-        expected = "an optical depth below 1e300 across the cloud"
-        raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
+    if not largest < BOUNDED:
+        _refuse_depth()
+
+
+def _refuse_depth() -> NoReturn:
+    expected = f"an optical depth below {BOUNDED:g} across the cloud"
+    raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
 
 
 def steepest(grid: VoxelGrid, medium: Medium) -> float:

@@ -7,11 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer
 from refcloud.march.glow import glow
 from refcloud.march.marched import Marched, marched
 from refcloud.march.mixing import PHYSICAL, Mixing
+from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 from refcloud.transport import ScatteredLight, scattered_light
@@ -20,7 +22,7 @@ Scattering = Literal["single", "multiple"] | ScatteredLight
 
 
 def marched_multiple(
-    cloud: VoxelGrid,
+    cloud: VoxelGrid | Metaballs,
     origins: Array,
     directions: Array,
     *,
@@ -32,6 +34,7 @@ def marched_multiple(
     tolerance: float,
     background: Array | None = None,
     observe: Observer | None = None,
+    camera: AnyCamera | None = None,
 ) -> Marched:
     """March rays through solved light, unchecked: the inner form of `integrate`.
 
@@ -44,13 +47,19 @@ def marched_multiple(
         As `marched`.
     scattering
         "multiple", or light that was solved before for this cloud.
-    suns, medium, ambient, mixing, tolerance, background, observe
+    suns, medium, ambient, mixing, tolerance, background, observe, camera
         As `marched`; half of the tolerance goes to the solution.
 
     Returns
     -------
     What was found; the transmittance is the true one.
     """
+    if not isinstance(cloud, VoxelGrid):
+        expected = "single for metaballs, whose light is not solved"
+        advice = (
+            "march a cloud map, or light balls by refcloud.lighting.lit_by_solution"
+        )
+        raise ValueError(complaint("scattering", expected, "other", advice))
     if mixing != PHYSICAL:
         expected = "none beside scattering multiple, whose light is solved without them"
         raise ValueError(complaint("mixing", expected, "one"))
@@ -78,6 +87,7 @@ def marched_multiple(
         mixing=mixing,
         tolerance=0.5 * tolerance,
         observe=observe,
+        camera=camera,
     )
     # 2. Light that was scattered more often.
     radiance = found.radiance + glow(cloud, origins, directions, light, tolerance)

@@ -28,7 +28,7 @@ from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array
 from refcloud.march.resample import Image, between, resampled
-from refcloud.march.view import View, part_of, view_of
+from refcloud.march.view import FINER, View, part_of, view_of
 from refcloud.march.warp import developed
 from refcloud.optics import Medium, Sun
 from refcloud.transport import LightVolume, sun_depths
@@ -45,6 +45,7 @@ def march_slices(
     suns: tuple[Sun, ...],
     medium: Medium,
     side: int | None = None,
+    finer: float = FINER,
     depths: Sequence[LightVolume] | None = None,
 ) -> tuple[Array, Array] | None:
     """Integrate light that is scattered once along the rays of a camera, unchecked.
@@ -62,7 +63,9 @@ def march_slices(
     medium
         What the cloud is made of; extinction may differ by channel.
     side
-        Samples of the image along its longer side; None for 1.25 per voxel.
+        Samples of the image along its longer side; None for `finer` per voxel.
+    finer
+        Samples per voxel where the cloud is nearest.
     depths
         A light volume for each sun, all of one scale; None makes them.
 
@@ -74,7 +77,7 @@ def march_slices(
     """
     if not single(grid, medium):
         return None
-    view = view_of(grid, camera, side)
+    view = view_of(grid, camera, side, finer)
     if view is None:
         return None
     if depths is None:

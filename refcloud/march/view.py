@@ -97,7 +97,16 @@ class Part:
         return v, tents(u)
 
 
-def view_of(grid: VoxelGrid, camera: AnyCamera, side: int | None) -> View | None:
+def sides_touched(grid: VoxelGrid) -> bool:
+    """Tell whether there is cloud at a side of the box."""
+    return any(
+        grid.density.take(end, axis=axis).any() for axis in range(3) for end in (0, -1)
+    )
+
+
+def view_of(
+    grid: VoxelGrid, camera: AnyCamera, side: int | None, finer: float = FINER
+) -> View | None:
     """Choose the main axis and the image's samples; None where slices cannot serve."""
     density = grid.density
     # 1. Where there is cloud, seen along x and along y; the box around it.
@@ -126,19 +135,19 @@ def view_of(grid: VoxelGrid, camera: AnyCamera, side: int | None) -> View | None
     for other, along in ((u, v), (v, u)):
         plane = across[other] if w < along else across[other].T
         planes.append(span_of(plane[::-1] if shear.back else plane))
-    q_v, q_u = image_grid(shear, bounds, turned, side)
+    q_v, q_u = image_grid(shear, bounds, turned, side, finer)
     return View(shear, q_v, q_u, (planes[0], planes[1]))
 
 
 def image_grid(
-    shear: Shear, bounds: Bounds, box: Array, side: int | None
+    shear: Shear, bounds: Bounds, box: Array, side: int | None, finer: float
 ) -> tuple[Array, Array]:
     """Spread samples over what shows, as far from each other along v as along u."""
     spans = [max(high - low, 0.0) for low, high in bounds]
     _, gain = shear.across(box[:, 0])
     if side is None:
         near = max(float(gain[0]), 0.5 * float(gain[1]))  # the eye may be in the cloud
-        side = min(int(np.ceil(FINER * max(spans) * near)) + 1, LARGEST)
+        side = min(int(np.ceil(finer * max(spans) * near)) + 1, LARGEST)
     step = max(spans) / max(side - 1, 1) or 1.0
     q = []
     for (low, _), span in zip(bounds, spans, strict=True):

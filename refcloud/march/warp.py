@@ -173,13 +173,7 @@ def numbers_of(view: View) -> tuple[Image, Image]:
     w, *across = (
         (start + down * np.arange(H))[:, None].astype(np.float32)
         + (right * np.arange(W)).astype(np.float32)
-        for start, right, down in shear.homogeneous(
-            (view.q_v[0], view.q_u[0]),
-            (
-                (view.q_v[1] - view.q_v[0]) / ENLARGED,
-                (view.q_u[1] - view.q_u[0]) / ENLARGED,
-            ),
-        )
+        for start, right, down in shear.homogeneous(first, step)
     )
     ahead = w > 0.0
     if not ahead.all():  # what leads away from the slices is beside the image

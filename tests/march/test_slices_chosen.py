@@ -1,0 +1,39 @@
+"""The march chooses slices by itself where they hold the tolerance, and only there."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from smooth_clouds import cloud
+
+from refcloud import render
+from refcloud.camera import Camera
+from refcloud.optics import Medium, Sun
+
+CAMERA = Camera([1.5, 1.0, 3.2], [0, 0, 0], fov_y=0.53, width=32, height=24)
+WHITE = Sun([-0.5, 0.7, 0.4])
+HOW = {"camera": CAMERA, "suns": WHITE, "background": [0.1, 0.2, 0.4]}
+
+
+@pytest.mark.parametrize("sigma_t", [6.0, np.array([4.0, 5.0, 6.0])])
+def test_slices_hold_the_tolerance(sigma_t) -> None:
+    medium, seen = Medium(sigma_t), {}
+    tolerance = 0.03
+    picture = render(
+        cloud(40), medium=medium, tolerance=tolerance, observe=seen.__setitem__, **HOW
+    )
+    assert any("slices" in note for note in picture.notes)
+    assert min(seen["errors of slices"].values()) * 2.0 <= tolerance
+    exact = render(cloud(40), medium=medium, **HOW)
+    assert np.abs(picture.linear - exact.linear).max() < tolerance
+    (row,) = picture.skipped
+    assert row.skipped == row.of == 32 * 24
+    assert row.bound <= tolerance
+
+
+def test_what_slices_do_not_hold_is_marched_by_rays() -> None:
+    full = cloud(24, filled=True)  # the box's edges would blur
+    picture = render(full, medium=Medium(6.0), tolerance=0.03, **HOW)
+    assert not any("slices" in note for note in picture.notes)
+    exact = render(full, medium=Medium(6.0), **HOW)
+    assert np.abs(picture.linear - exact.linear).max() < 0.03
