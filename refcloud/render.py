@@ -151,7 +151,7 @@ def render(
     _refuse_idle(march, look=look, ambient=ambient, mixing=mixing)
     if not march and scattering != "single":
         expected = "single beside the method splat"
-        advice = "march a cloud map, or light balls by refcloud.lighting.lit_by_solution"
+        advice = "march a cloud map, or light balls by lighting.lit_by_solution"
         raise ValueError(complaint("scattering", expected, "other", advice))
     notes: list[str] = []
     if drawn is not cloud and isinstance(drawn, Metaballs):
