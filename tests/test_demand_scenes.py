@@ -206,6 +206,15 @@ def test_clouds_are_as_fine_as_the_picture_shows_them() -> None:
     assert demand.fineness(View(1, 1)) == demand.COARSEST
 
 
+def test_the_farthest_cloud_is_drawn_first() -> None:
+    front = demand_hero.cumulus.camera(VIEW)
+    behind = dataclasses.replace(front, eye=np.array([0.0, 5.0, -2000.0]))
+    order = demand_hero.farthest_first(front)
+    assert order[-1] is HERO
+    assert demand_hero.farthest_first(behind)[0] is HERO
+    assert {*order} == {*demand_hero.FIELD, HERO}
+
+
 def test_the_hero_stands_over_its_field() -> None:
     camera = Camera(
         demand_hero.cumulus.EYE, demand_hero.cumulus.TARGET, width=48, height=36

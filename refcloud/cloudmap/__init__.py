@@ -1,4 +1,4 @@
-"""From noise to a cloud map: ellipsoids, the cumulus shape, and the map's file."""
+"""From noise to a cloud map: ellipsoids, cumuli, boxes of cloud, and the map's file."""
 
 from refcloud.cloudmap.billows import billows, carve, lumps_grid
 from refcloud.cloudmap.box import box_corners, box_lines, box_triangles, resized_box

@@ -209,7 +209,8 @@ def marched(
         found = _go(cloud, at, move, steps, step, least, tally)
         radiance[some], through[some] = found
     sampled, passed, ended = tally.tolist()
-    brightest = float(cloud.table[..., :3].max(initial=0.0))
+    # Either the cloud is missed behind the front, or a background of at most white.
+    brightest = max(float(cloud.table[..., :3].max()), 1.0)
     skipped = (
         Skipped("march", "samples between empty voxels", passed, passed + sampled),
         Skipped(

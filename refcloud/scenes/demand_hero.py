@@ -68,7 +68,7 @@ def draw(model: Model, view: View) -> Picture:
     seconds["sky"] = time.perf_counter() - start
     skipped: list[Skipped] = []
     notes = []
-    clouds = (*FIELD, HERO)
+    clouds = farthest_first(camera)
     for placed in clouds:
         start = time.perf_counter()
         voxel = fineness(camera, placed)
@@ -110,7 +110,15 @@ def fineness(camera: AnyCamera, placed: Placed) -> float:
 
 def distance(camera: AnyCamera, placed: Placed) -> float:
     """Give how far a cloud's place is from the eye."""
-    return float(np.hypot(*(camera.eye - [placed.x, 0.0, placed.z])[[0, 2]]))
+    way = camera.eye - np.array([placed.x, 0.0, placed.z])
+    return math.sqrt(float(way @ way))
+
+
+def farthest_first(camera: AnyCamera) -> list[Placed]:
+    """Order the clouds for one eye: none of them reaches through another."""
+    return sorted(
+        (*FIELD, HERO), key=lambda placed: distance(camera, placed), reverse=True
+    )
 
 
 def seen_from(camera: AnyCamera, placed: Placed) -> AnyCamera:

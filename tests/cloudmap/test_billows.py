@@ -47,6 +47,7 @@ def test_n16_octaves_that_cannot_be_displayed_are_left_out() -> None:
     assert [row.skipped for row in rows] == [2]
 
 
+@settings(max_examples=40)
 @given(st.floats(-20.0, 20.0), st.floats(0.0, 5.0), share, share, st.floats(0.0, 9.0))
 def test_deeper_is_denser_and_lumps_are_too(depth, more, lumps, detail, y) -> None:
     values = {"lumps": [[[lumps]]], "detail": [[[detail]]], "y": [y]}
@@ -57,6 +58,7 @@ def test_deeper_is_denser_and_lumps_are_too(depth, more, lumps, detail, y) -> No
     assert lower <= here + 1e-12
 
 
+@settings(max_examples=40)
 @given(share, share, st.floats(-20.0, 20.0))
 def test_below_the_base_and_far_outside_nothing_is_left(lumps, detail, depth) -> None:
     at = {"lumps": [[[lumps]]], "detail": [[[detail]]]}

@@ -36,12 +36,14 @@ depths = st.floats(0.0, 100.0)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
 
 
+@settings(max_examples=40)
 @given(models(), means, st.integers(0, 15))
 def test_lobes_of_every_octave_send_what_they_get(octaves, g, n) -> None:
     whole = 2.0 * np.pi * (WEIGHTS * octave_lobe(NODES, n, g=g, octaves=octaves)).sum()
     assert whole == pytest.approx(1.0, abs=1e-9)
 
 
+@settings(max_examples=40)
 @given(cosines, means, st.floats(0.0, 1.0), depths)
 def test_one_octave_is_single_scattering(cosine, g, albedo, tau) -> None:
     found = octave_source([cosine], [tau], g=g, albedo=albedo, octaves=SINGLE)
@@ -49,6 +51,7 @@ def test_one_octave_is_single_scattering(cosine, g, albedo, tau) -> None:
     np.testing.assert_allclose(found, expected, rtol=1e-13)
 
 
+@settings(max_examples=40)
 @given(models(), cosines, means, st.floats(0.0, 1.0), depths, st.floats(0.0, 5.0))
 def test_light_falls_with_depth_and_grows_with_octaves(
     octaves, cosine, g, albedo, tau, more
@@ -60,6 +63,7 @@ def test_light_falls_with_depth_and_grows_with_octaves(
     assert octave_source([cosine], [tau], **(how | {"octaves": another}))[0] >= here
 
 
+@settings(max_examples=40)
 @given(models(), means)
 def test_thin_media_send_the_sum_of_all_octaves(octaves, g) -> None:
     # Over the sphere every lobe sends 1: together 1 + b + b^2 + ..., as stated.
@@ -69,6 +73,7 @@ def test_thin_media_send_the_sum_of_all_octaves(octaves, g) -> None:
     assert whole == pytest.approx(expected, rel=1e-9)
 
 
+@settings(max_examples=40)
 @given(models(), depths, depths)
 def test_sky_and_ground_light_each_their_side(octaves, above, below) -> None:
     both = sky_source([above], [below], octaves=octaves)

@@ -28,6 +28,7 @@ BOX = [-1.0, -0.8, -0.6], [1.0, 0.8, 0.6]
 NONE = [0.0, 0.0, 0.0, 0.0]
 
 
+@settings(max_examples=40)
 @given(spots, st.lists(st.floats(0.5, 12.0), min_size=3, max_size=7))
 def test_triangles_about_a_point_fill_every_pixel_once(middle, reach) -> None:
     # A fan that covers a star-shaped area once, on whole sub-pixels.
