@@ -173,11 +173,9 @@ def render(
         ambient=ambient,
         mixing=mixing,
     )
-    if scattering != "single" and not (march and isinstance(cloud, VoxelGrid)):
-        expected = "single where balls are drawn"
-        advice = (
-            "march a cloud map, or light balls by refcloud.lighting.lit_by_solution"
-        )
+    if scattering != "single" and not march:
+        expected = "single beside the method splat"
+        advice = "march a cloud map, or light balls by lighting.lit_by_solution"
         raise ValueError(complaint("scattering", expected, "other", advice))
     drawn = as_drawn(cloud, method)
     if drawn is not cloud and isinstance(drawn, Metaballs):

@@ -55,8 +55,11 @@ def marched_multiple(
     What was found; the transmittance is the true one.
     """
     if not isinstance(cloud, VoxelGrid):
-        expected = "a cloud map, for light that is scattered more than once"
-        raise ValueError(complaint("cloud", expected, "metaballs"))
+        expected = "single for metaballs, whose light is not solved"
+        advice = (
+            "march a cloud map, or light balls by refcloud.lighting.lit_by_solution"
+        )
+        raise ValueError(complaint("scattering", expected, "other", advice))
     if mixing != PHYSICAL:
         expected = "none beside scattering multiple, whose light is solved without them"
         raise ValueError(complaint("mixing", expected, "one"))

@@ -95,7 +95,8 @@ def delta_m(medium: Medium, degree: Annotated[int, Range(0, 63)]) -> ScaledMediu
 
     Returns
     -------
-    The scaled medium. A backward lobe (g < 0) has no forward peak: it is cut off at L.
+    The scaled medium. A backward lobe (g < 0) has no forward peak: it is cut off at L,
+    and pictures are off by 0.01 at g = -0.6, by 0.3 and 20 % too bright at -0.95.
 
     Source: an extension of paper M (multiple scattering, X09).
 

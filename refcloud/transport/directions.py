@@ -71,7 +71,7 @@ def sphere_directions(count: DirectionCount = 26) -> Directions:
 
     Examples
     --------
-    >>> sphere_directions(26).vectors[0]
+    >>> sphere_directions(26).vectors[4]
     array([ 0.,  0., -1.])
     >>> round(float(sphere_directions(50).weights.sum() / WHOLE_SPHERE), 12)
     1.0

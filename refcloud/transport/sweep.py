@@ -122,12 +122,11 @@ def sweep(
 
     Examples
     --------
-    >>> six = sphere_directions(26)
-    >>> empty = np.zeros((2, 2, 2))
-    >>> out = sweep(np.zeros((26, 2, 2, 2)), empty, six, cell=[1, 1, 1],
-    ...             inflow=np.ones(26))
-    >>> float(out.min()), float(out.max())
-    (1.0, 1.0)
+    >>> down = Directions([[0, -1, 0]], [1.0], 0)
+    >>> cloud = np.ones((1, 3, 1))
+    >>> dark = np.zeros((1, 1, 3, 1))
+    >>> sweep(dark, cloud, down, cell=[1, 1, 1], inflow=[1.0]).ravel().round(3)
+    array([0.086, 0.233, 0.632])
     """
     radiance = np.empty_like(source)
     outside = np.zeros(len(source)) if inflow is None else inflow

@@ -11,6 +11,7 @@ from small_lights import FORWARD, SUN, ball, cloud
 import refcloud as rc
 from refcloud.camera import OrthographicCamera, rays
 from refcloud.march import integrate
+from refcloud.metaballs import voxel_balls
 from refcloud.optics import Medium, Sun
 from refcloud.transport import Plan, Stage, scattered_light, trace_paths
 
@@ -199,5 +200,8 @@ def test_render_solves_notes_and_refuses() -> None:
     assert any(note.startswith("scattered light: ") for note in many.notes)
     with pytest.raises(ValueError, match=r"^scattering: expected single beside"):
         rc.render(cloud(), scattering="multiple", method="splat")
+    balls = voxel_balls(cloud(4))
+    with pytest.raises(ValueError, match=r"^scattering: expected single for metaballs"):
+        rc.render(balls, scattering="multiple", method="march", width=8)
     with pytest.raises(ValueError, match=r"^scattering: expected none beside a scene"):
         rc.render("man-09", scattering="multiple")
