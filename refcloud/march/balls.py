@@ -11,8 +11,9 @@ import numpy as np
 
 from refcloud.conventions import Array
 from refcloud.march.chords import columns_of, met
-from refcloud.march.exact import THICKEST, Points, scattered
+from refcloud.march.exact import Points, scattered
 from refcloud.march.mixing import Mixing
+from refcloud.march.pieces import THICKEST
 from refcloud.march.quadrature import before_each, gauss, integrals_up_to
 from refcloud.metaballs import Metaballs
 from refcloud.metaballs.kernels import profile_of

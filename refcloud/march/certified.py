@@ -25,20 +25,21 @@ from refcloud.march.fast import (
     light_volumes,
 )
 from refcloud.march.gather import Counts
+from refcloud.march.lines import frame_numbers
 from refcloud.march.mixing import PHYSICAL
-from refcloud.march.quadrature import columns
+from refcloud.march.sampling import CHECKED, chosen_rays, edge_rays
 from refcloud.march.sliced import SLICINGS, Slicing, sliced
 from refcloud.march.task import Task
-from refcloud.noise import uniform
 from refcloud.transport import sun_depths
 
-CHECKED = 256  # rays of the sample
 # Gauss points of a piece on checked rays: two are off by less than a hundredth of the
 # least tolerance that slabs can meet.
 CHECKED_POINTS = 2
 COARSE = 1e-3  # tolerances at which two points serve for all rays too
 # On the largest error of the sample: what other rays may have beyond it.
 MARGIN = 2.0
+# The steepest rays of slices are their worst ones, so less is left beyond them.
+EDGE_MARGIN = 1.25
 # Below it single precision shows.
 FINEST = 1e-5
 # From coarse to fine; each is about twice as slow as the one before.
@@ -93,7 +94,10 @@ def to_tolerance(
         if found is None:
             break
         tried[slicing] = some.error((found[0][sample], found[1][sample]), expected)
-        if MARGIN * tried[slicing] <= tolerance:
+        if (
+            MARGIN * tried[slicing] <= tolerance
+            and edge_error(task, found, 0.1 * least) <= tolerance / EDGE_MARGIN
+        ):
             watch("errors of slices", tried)
             row = Skipped(
                 "march",
@@ -112,9 +116,12 @@ def to_tolerance(
 
     # 3. Settings of slabs in turn, on the sample.
     small = lattice(inner)
+    frames = frame_numbers(small, task.directions)
     lights: dict[Scale, list[NDArray[np.float32]]] = {}
 
-    def march(rays: Task, setting: Setting, counts: Counts) -> tuple[Array, Array]:
+    def march(
+        rays: Task, frames: NDArray[np.intp], setting: Setting, counts: Counts
+    ) -> tuple[Array, Array]:
         if setting.scale not in lights:
             lights[setting.scale] = light_volumes(
                 inner, task.suns, task.medium, task.mixing, setting.scale
@@ -131,12 +138,15 @@ def to_tolerance(
             setting=setting,
             least=least,
             counts=counts,
+            frames=frames,
             lights=lights[setting.scale],
         )
 
     errors: dict[Setting, float] = {}
     for setting in SETTINGS:
-        errors[setting] = some.error(march(some, setting, Counts()), expected)
+        errors[setting] = some.error(
+            march(some, frames[sample], setting, Counts()), expected
+        )
         if MARGIN * errors[setting] <= tolerance:
             break
     watch("errors of settings", errors)
@@ -149,7 +159,7 @@ def to_tolerance(
         note = f"march: exact, since slabs were off by {error:.2g} on the checked rays"
         return radiance, column, (), (note,)
     counts = Counts()
-    radiance, column = march(task, setting, counts)
+    radiance, column = march(task, frames, setting, counts)
     rows = (
         Skipped("march", "exact rays", len(column), len(column), MARGIN * error),
         Skipped("march", "passages through empty slabs", counts.empty, counts.all),
@@ -188,13 +198,13 @@ def by_slices(
     )
 
 
-def chosen_rays(task: Task) -> NDArray[np.intp]:
-    """Choose rays that meet density, by a hash of their number."""
-    count = len(task.origins)
-    if not count:
-        return np.zeros(0, np.intp)
-    drawn = np.unique((uniform(np.arange(8 * CHECKED), seed=0) * count).astype(np.intp))
-    held = columns(task.grid, task.origins[drawn], task.directions[drawn])
-    drawn = drawn[held > 0.0]
-    order = np.argsort(uniform(drawn, seed=0), kind="stable")
-    return np.sort(drawn[order[:CHECKED]])
+def edge_error(task: Task, found: tuple[Array, Array], least: float) -> float:
+    """Give the largest error of a camera's picture on the rays where it is steepest."""
+    if task.camera is None:
+        return 0.0
+    thickest = float(np.max(task.medium.sigma_t))
+    edges = edge_rays(task.camera, -np.expm1(-thickest * found[1]))
+    some = task.taken(edges)
+    return some.error(
+        (found[0][edges], found[1][edges]), some.exact(least, CHECKED_POINTS)
+    )

@@ -16,6 +16,7 @@ import numpy as np
 from refcloud.conventions import Array
 from refcloud.march.cells import Lattice, Numbers, Pieces, cut, density_at, most_rays
 from refcloud.march.mixing import Mixing
+from refcloud.march.pieces import POINTS, WEIGHTS, evenly, taken, thinner
 from refcloud.march.quadrature import (
     before_each,
     columns,
@@ -26,13 +27,10 @@ from refcloud.march.quadrature import (
 from refcloud.march.steps import reaching
 from refcloud.optics import Medium, Sun
 
-POINTS, WEIGHTS = gauss(4)
-# Optical depth of a piece: four points integrate exp(-2 tau) over it, which is light
-# that comes and goes the same way, to 3e-10.
-THICKEST = 0.5
+# Change of a sun's optical depth along a piece: with the eye's .5, exact to 2e-8.
+STEEPEST = 1.0
 # Optical depth behind which nothing shows: exp(-41) is below a last bit of white.
 DEEPEST = 41.0
-HALVINGS = 50  # of a piece, to find where an optical depth is reached
 
 
 @dataclass(frozen=True)
@@ -55,6 +53,12 @@ class Points:
     near: Array
     amount: Array
     places: Array
+
+    def taken(self, which: Numbers) -> Points:
+        """Keep the points of some pieces."""
+        return Points(
+            self.ray[which], self.near[which], self.amount[which], self.places[which]
+        )
 
 
 def exact(
@@ -122,6 +126,7 @@ def _some(
     count = len(origins)
     sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
     eyeward = mixing.light_absorption_through_cloud * sigma_t
+    sunward = mixing.light_absorption_toward_sun * float(sigma_t.max())
 
     # 1. Cut the rays, and integrate the density up to each point.
     pieces = cut(grid, origins, directions, [sun.direction for sun in suns])
@@ -139,24 +144,71 @@ def _some(
     pieces, before, mass = taken(pieces, seen), before[seen], mass[seen]
     pieces, before = thinner(pieces, before, mass, float(eyeward.max()), deepest)
 
-    # 2. The light that reaches each point from the eye's side and from the suns'.
-    shares, weights = gauss(points)
-    up_to = density_at(pieces, POINTS) @ integrals_up_to(shares, POINTS).T
-    length = pieces.length[:, None]
-    near = before[:, None] + length * up_to
-    amount = density_at(pieces, shares) * (length * weights)  # (P, points)
-    t = pieces.start[:, None] + length * shares
-    places = origins[pieces.ray, None] + t[..., None] * directions[pieces.ray, None]
-    found = scattered(
-        Points(pieces.ray, near, amount, places),
-        count,
-        lambda points, toward: columns(grid, points, toward),
-        suns,
-        lit,
-        medium,
-        mixing,
-    )
+    # 2. Points on the pieces, and the light that reaches them from each sun. Where that
+    # changes much along a piece, as beside a grazed face, the piece is cut further.
+    rule = gauss(points)
+    found = np.zeros((count, 3))
+    placed = points_of(pieces, before, origins, directions, rule)
+    for sun, source in zip(suns, lit, strict=True):
+        if not source.any():
+            continue
+        far = far_of(grid, placed, sun)
+        parts = parts_needed(sunward * far, np.ptp(rule[0]))
+        gentle, steep = np.flatnonzero(parts == 1), np.flatnonzero(parts > 1)
+        add(found, placed.taken(gentle), far[gentle], source, medium, mixing)
+        if len(steep):
+            finer = evenly(taken(pieces, steep), before[steep], parts[steep])
+            more = points_of(*finer, origins, directions, rule)
+            add(found, more, far_of(grid, more, sun), source, medium, mixing)
     return found, column
+
+
+def far_of(grid: Lattice, points: Points, sun: Sun) -> Array:
+    """Give columns of density from points to a sun, shape (P, K)."""
+    places = points.places.reshape(-1, 3)
+    return columns(grid, places, sun.direction).reshape(points.near.shape)
+
+
+def parts_needed(tau: Array, share: float) -> Numbers:
+    """Tell into how many parts to cut pieces, by the suns' depths at their points.
+
+    Parameters
+    ----------
+    tau
+        Optical depths at the points of each piece, shape (P, K).
+    share
+        Of a piece that lies between its outermost points.
+
+    Returns
+    -------
+    1 or more, shape (P,).
+    """
+    low = tau.min(axis=1, initial=np.inf)
+    # Behind the deepest there is no light left to change.
+    change = np.minimum(
+        tau.max(axis=1, initial=0.0) - low, np.maximum(DEEPEST - low, 0.0)
+    )
+    return np.maximum(np.ceil(change / (share * STEEPEST)), 1.0).astype(np.intp)
+
+
+def points_of(
+    pieces: Pieces,
+    before: Array,
+    origins: Array,
+    directions: Array,
+    rule: tuple[Array, Array],
+) -> Points:
+    """Place Gauss points on pieces, with the columns up to them."""
+    shares, weights = rule
+    length = pieces.length[:, None]
+    up_to = density_at(pieces, POINTS) @ integrals_up_to(shares, POINTS).T
+    t = pieces.start[:, None] + length * shares
+    return Points(
+        pieces.ray,
+        before[:, None] + length * up_to,
+        density_at(pieces, shares) * (length * weights),
+        origins[pieces.ray, None] + t[..., None] * directions[pieces.ray, None],
+    )
 
 
 def scattered(
@@ -186,87 +238,41 @@ def scattered(
     Radiance, shape (N, 3).
     """
     radiance = np.zeros((count, 3))
-    sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
-    eyeward = mixing.light_absorption_through_cloud * sigma_t
     for sun, source in zip(suns, lit, strict=True):
-        if not source.any():
-            continue
-        far = columns_to(points.places.reshape(-1, 3), sun.direction)
-        far = far.reshape(points.near.shape)
-        for channel, sigma in enumerate(sigma_t):
-            shown = np.exp(-eyeward[channel] * points.near)
-            shown *= reaching(sigma * far, mixing)
-            amounts = sigma * (points.amount * shown).sum(axis=1)
-            whole = per_ray(points.ray, amounts, count)
-            channels = slice(None) if len(sigma_t) == 1 else [channel]
-            radiance[:, channels] += source[:, channels] * whole[:, None]
+        if source.any():
+            far = columns_to(points.places.reshape(-1, 3), sun.direction)
+            far = far.reshape(points.near.shape)
+            add(radiance, points, far, source, medium, mixing)
     return radiance
 
 
-def taken(pieces: Pieces, which: Numbers) -> Pieces:
-    """Keep some pieces, or repeat them."""
-    return Pieces(
-        pieces.ray[which],
-        pieces.start[which],
-        pieces.length[which],
-        pieces.corners[:, which],
-        pieces.place[:, which],
-        pieces.step[:, which],
-    )
-
-
-def thinner(
-    pieces: Pieces, before: Array, mass: Array, rate: float, deepest: float
-) -> tuple[Pieces, Array]:
-    """Cut pieces that are optically thick, down to where nothing shows.
+def add(
+    radiance: Array,
+    points: Points,
+    far: Array,
+    source: Array,
+    medium: Medium,
+    mixing: Mixing,
+) -> None:
+    """Add what points scatter toward the eye of one sun's light.
 
     Parameters
     ----------
-    pieces
-        P pieces.
-    before, mass
-        Columns of density in front of each and within it, shape (P,).
-    rate
-        Largest extinction per column.
-    deepest
-        Optical depth behind which nothing shows.
-
-    Returns
-    -------
-    Pieces of optical depth `THICKEST` at most, and the columns in front of them.
+    radiance
+        Of N rays, shape (N, 3); changed.
+    points, far
+        The points, and columns of density from them to the sun, shape (P, K).
+    source
+        What the sun sends along each ray, shape (N, 3).
+    medium, mixing
+        As `exact`.
     """
-    tau = rate * mass
-    if not (tau > THICKEST).any():
-        return pieces, before
-    # 1. Into how many, and how many of those may show.
-    parts = np.ceil(np.maximum(tau / THICKEST, 1.0))
-    left = (deepest - rate * before) * parts / np.maximum(tau, THICKEST)
-    shown = np.maximum(np.minimum(parts, np.ceil(left)), 1.0).astype(np.intp)
-    parent = np.repeat(np.arange(len(tau)), shown)
-    number = np.arange(len(parent)) - np.repeat(np.cumsum(shown) - shown, shown)
-
-    # 2. Find where the column within the piece has each part behind it, by halving.
-    whole = taken(pieces, parent)
-    ends = []
-    for k in (number, number + 1):
-        share = k / parts[parent]
-        low, high = np.zeros(len(k)), np.ones(len(k))
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            values = density_at(whole, middle[:, None] * POINTS)
-            passed = whole.length * middle * (values @ WEIGHTS)
-            beyond = passed > share * mass[parent]
-            high = np.where(beyond, middle, high)
-            low = np.where(beyond, low, middle)
-        ends.append(np.where(k == 0, 0.0, np.where(share >= 1.0, 1.0, high)))
-
-    # 3. Each part is a piece of its own.
-    begin, extent = ends[0], np.maximum(ends[1] - ends[0], 0.0)
-    return Pieces(
-        whole.ray,
-        whole.start + begin * whole.length,
-        extent * whole.length,
-        whole.corners,
-        whole.place + whole.step * begin,
-        whole.step * extent,
-    ), before[parent] + number / parts[parent] * mass[parent]
+    sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
+    eyeward = mixing.light_absorption_through_cloud * sigma_t
+    for channel, sigma in enumerate(sigma_t):
+        shown = np.exp(-eyeward[channel] * points.near)
+        shown *= reaching(sigma * far, mixing)
+        amounts = sigma * (points.amount * shown).sum(axis=1)
+        whole = per_ray(points.ray, amounts, len(radiance))
+        channels = slice(None) if len(sigma_t) == 1 else [channel]
+        radiance[:, channels] += source[:, channels] * whole[:, None]

@@ -13,7 +13,7 @@ from refcloud.conventions import Array
 from refcloud.march.cells import Lattice, cropped, lattice
 from refcloud.march.gather import BLOCK, Counts, Slabs, gather
 from refcloud.march.light import sources
-from refcloud.march.lines import STEEPEST, Frame, as_lines, by_frame
+from refcloud.march.lines import STEEPEST, Frame, as_lines, by_frame, frame_numbers
 from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.march.planes import planes
 from refcloud.march.steps import reaching
@@ -44,6 +44,7 @@ def fast(
     setting: Setting,
     least: float,
     counts: Counts,
+    frames: NDArray[np.intp],
     lights: list[NDArray[np.float32]],
 ) -> tuple[Array, Array]:
     """March rays through slabs, unchecked.
@@ -64,6 +65,8 @@ def fast(
         Transmittance below which a ray is dropped.
     counts
         Adds up what was left out.
+    frames
+        Of `frame_numbers`, shape (N,).
     lights
         Of `light_volumes`, at the setting's scale.
 
@@ -74,7 +77,7 @@ def fast(
     sigma_t = np.atleast_1d(medium.sigma_t)
     through_cloud = mixing.light_absorption_through_cloud
     radiance, column = np.zeros((len(origins), 3)), np.zeros(len(origins))
-    for frame, which in by_frame(grid, directions):
+    for frame, which in by_frame(frames):
         lines, hits = as_lines(grid, frame, origins[which], directions[which])
         which = which[hits]
         if not len(which):
@@ -207,9 +210,10 @@ def march_slabs(
     """
     inner = cropped(cloud)
     setting = Setting(thickness, scale)
+    small = lattice(inner)
     return fast(
         inner,
-        lattice(inner),
+        small,
         origins,
         directions,
         suns=suns,
@@ -219,5 +223,6 @@ def march_slabs(
         setting=setting,
         least=least,
         counts=Counts(),
+        frames=frame_numbers(small, directions),
         lights=light_volumes(inner, suns, medium, PHYSICAL, scale),
     )

@@ -21,7 +21,7 @@ from refcloud.cloudmap.sample import clamped_trilinear
 from refcloud.conventions import Array
 from refcloud.march.box import slabs
 from refcloud.march.cells import Lattice, cut, density_at, lattice, most_rays
-from refcloud.march.exact import POINTS, WEIGHTS, taken, thinner
+from refcloud.march.pieces import POINTS, WEIGHTS, taken, thinner
 from refcloud.march.quadrature import before_each, integrals_up_to
 from refcloud.transport import ScatteredLight
 from refcloud.transport.scattering import harmonics_toward, source_terms

@@ -71,24 +71,30 @@ class Lines:
         return u, v
 
 
-def by_frame(grid: Lattice, directions: Array) -> list[tuple[Frame, NDArray[np.intp]]]:
-    """Sort rays by the axis along which they pass most cells, and the sense.
+def frame_numbers(grid: Lattice, directions: Array) -> NDArray[np.intp]:
+    """Give each ray a frame: the axis along which it passes most cells, and the sense.
 
     Those that pass nearly as many along the axis of most rays join them: slabs of
-    another frame cost more than a few steeper rays lose.
+    another frame cost more than a few steeper rays lose. So a ray's frame depends on
+    the others: a sample of rays keeps the frames that it has among all.
     """
     slope = [directions[:, k] / grid.size[k] for k in range(3)]
     steep = [np.abs(part) for part in slope]
     largest = np.maximum(np.maximum(steep[0], steep[1]), steep[2])
     axis = np.where(steep[0] == largest, 0, np.where(steep[1] == largest, 1, 2))
     flipped = np.where(axis == 0, slope[0], np.where(axis == 1, slope[1], slope[2])) < 0
-    kind = 2 * axis + flipped
-    most = int(np.bincount(kind, minlength=6).argmax())
+    number = 2 * axis + flipped
+    most = int(np.bincount(number, minlength=6).argmax())
     sense = -slope[most // 2] if most % 2 else slope[most // 2]
-    kind[sense * STEEPEST >= largest] = most
+    number[sense * STEEPEST >= largest] = most
+    return number
+
+
+def by_frame(numbers: NDArray[np.intp]) -> list[tuple[Frame, NDArray[np.intp]]]:
+    """Sort rays by their frames' numbers."""
     found = []
     for number in range(6):
-        which = np.flatnonzero(kind == number)
+        which = np.flatnonzero(numbers == number)
         if len(which):
             found.append((Frame(number // 2, bool(number % 2)), which))
     return found
@@ -123,12 +129,14 @@ def as_lines(
     # 2. Slabs end at the box by themselves: only faces aside, and an origin within,
     # cut a ray where there is density.
     w, (u, v) = frame.axis, frame.across
-    if grid.reaches_faces or (t0[hits] == -shift).any():
+    ended = (t0[hits] == -shift) | grid.reaches_faces
+    t0, t1 = np.full(len(hits), -np.inf), np.full(len(hits), np.inf)
+    if ended.any():
         endless = np.where(np.arange(3) == w, np.inf, 0.0)
         first, last = grid.first - endless, grid.last + endless
-        t0, t1 = slabs(place, slope, first, last, -shift)
-    else:
-        t0, t1 = np.array(-np.inf), np.array(np.inf)
+        t0[ended], t1[ended] = slabs(
+            place[ended], slope[ended], first, last, -shift[ended]
+        )
     rise, height = slope[:, w], place[:, w]
     if frame.flipped:
         rise, height = -rise, grid.counts[w] - 1.0 - height

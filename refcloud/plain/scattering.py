@@ -66,9 +66,8 @@ def legendre(degree: int, c: float) -> float:
     return now
 
 
-def associated(l: int, m: int, c: float) -> float:
-    """Evaluate P_l^m(c) without Condon's and Shortley's sign."""
-    s = math.sqrt(max(1.0 - c * c, 0.0))
+def associated(l: int, m: int, c: float, s: float) -> float:
+    """Evaluate P_l^m(c), s = sqrt(1 - c^2), without Condon's and Shortley's sign."""
     before, now = 0.0, math.prod(range(1, 2 * m, 2)) * s**m
     for k in range(m + 1, l + 1):
         before, now = now, ((2 * k - 1) * c * now - (k + m - 1) * before) / (k - m)
@@ -78,7 +77,7 @@ def associated(l: int, m: int, c: float) -> float:
 def harmonics(vector: Point, degree: int) -> list[float]:
     """Evaluate real spherical harmonics: N_lm P_l^|m|(cos theta) cos or sin m phi."""
     x, y, z = vector
-    phi = math.atan2(y, x)
+    phi, sine = math.atan2(y, x), math.hypot(x, y)
     found = []
     for l in range(degree + 1):
         for m in range(-l, l + 1):
@@ -87,7 +86,7 @@ def harmonics(vector: Point, degree: int) -> list[float]:
             norm = math.sqrt((2 * l + 1) / WHOLE_SPHERE * ratio)
             wave = math.sin(n * phi) if m < 0 else math.cos(n * phi)
             both = math.sqrt(2.0) if m else 1.0
-            found.append(both * norm * associated(l, n, z) * wave)
+            found.append(both * norm * associated(l, n, z, sine) * wave)
     return found
 
 

@@ -39,7 +39,7 @@ def test_bench_prints_a_table_and_rows(capsys: pytest.CaptureFixture[str]) -> No
     assert "numpy" in table
     assert main(["bench", "noise", "--quick", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
-    assert {"task", "name", "timing", "ratio", "error"} == set(rows[0])
+    assert {"task", "name", "timing", "ratio", "error", "rms"} == set(rows[0])
     assert {row["task"] for row in rows} >= {"Perlin grid", "Worley scattered"}
     ours = [row for row in rows if row["name"] == "refcloud float32"]
     # Of values in [-1, 1]; float32 holds 1.2e-7 and a sum of corners some ten of it.

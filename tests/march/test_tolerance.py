@@ -19,7 +19,7 @@ from refcloud.march.certified import SETTINGS
 from refcloud.march.fast import Setting, fast, light_volumes
 from refcloud.march.gather import Counts
 from refcloud.march.light import sources
-from refcloud.march.lines import Frame, by_frame
+from refcloud.march.lines import Frame, by_frame, frame_numbers
 from refcloud.march.planes import RIM, looked_up, planes, tent_means
 from refcloud.optics import Medium, Sun
 
@@ -57,6 +57,7 @@ def through(cloud: VoxelGrid, camera: AnyCamera, setting: Setting, **how):
         setting=setting,
         least=how.get("least", 1e-7),
         counts=counts,
+        frames=frame_numbers(lattice(inner), ways),
         lights=light_volumes(inner, suns, medium, mixing, setting.scale),
     )
     return *found, counts
@@ -79,6 +80,18 @@ def test_finer_slabs_come_nearer_from_any_eye(cloud, medium, camera) -> None:
     assert errors[1] < 0.016
     assert errors[2] < 0.03
     assert errors[3] < 0.001
+
+
+def test_checked_rays_are_marched_as_among_all_others() -> None:
+    """Seen from near, rays take several frames; a sample of them keeps those."""
+    camera = Camera([2.0, 0.0, 4.0], [0, 0, 0], fov_y=1.5, **SIZE)
+    cloud = blob((4, 6, 7), 2)
+    exact, T = integrate(cloud, *rays(camera), suns=(), medium=Medium(1.0))
+    found, seen = integrate(
+        cloud, *rays(camera), suns=(), medium=Medium(1.0), tolerance=0.25
+    )
+    assert np.abs(seen - T).max() <= 0.25
+    assert np.abs(found - exact).max() <= 0.25
 
 
 @settings(max_examples=6, suppress_health_check=[HealthCheck.too_slow])
@@ -190,7 +203,7 @@ def test_a_look_up_between_samples_is_trilinear_where_w_is_level() -> None:
 
 def test_rays_are_sorted_into_frames() -> None:
     ways = np.concatenate([np.eye(3), -np.eye(3), [[0.0, 0.9, 1.0]]])
-    frames = by_frame(lattice(BLOB), ways)
+    frames = by_frame(frame_numbers(lattice(BLOB), ways))
     assert sum(len(which) for _, which in frames) == 7
     assert len({(frame.axis, frame.flipped) for frame, _ in frames}) == 6
     field = np.arange(24.0).reshape(2, 3, 4)

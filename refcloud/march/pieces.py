@@ -1,0 +1,100 @@
+"""Pieces of rays cut further: down to an optical depth, or evenly."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refcloud.conventions import Array
+from refcloud.march.cells import Numbers, Pieces, density_at
+from refcloud.march.quadrature import gauss
+
+POINTS, WEIGHTS = gauss(4)
+# Optical depth of a piece: four points integrate exp(-2 tau) over it, which is light
+# that comes and goes the same way, to 3e-10.
+THICKEST = 0.5
+HALVINGS = 50  # of a piece, to find where an optical depth is reached
+
+
+def taken(pieces: Pieces, which: Numbers) -> Pieces:
+    """Keep some pieces, or repeat them."""
+    return Pieces(
+        pieces.ray[which],
+        pieces.start[which],
+        pieces.length[which],
+        pieces.corners[:, which],
+        pieces.place[:, which],
+        pieces.step[:, which],
+    )
+
+
+def thinner(
+    pieces: Pieces, before: Array, mass: Array, rate: float, deepest: float
+) -> tuple[Pieces, Array]:
+    """Cut pieces that are optically thick, down to where nothing shows.
+
+    Parameters
+    ----------
+    pieces
+        P pieces.
+    before, mass
+        Columns of density in front of each and within it, shape (P,).
+    rate
+        Largest extinction per column.
+    deepest
+        Optical depth behind which nothing shows.
+
+    Returns
+    -------
+    Pieces of optical depth `THICKEST` at most, and the columns in front of them.
+    """
+    tau = rate * mass
+    if not (tau > THICKEST).any():
+        return pieces, before
+    # 1. Into how many, and how many of those may show.
+    parts = np.ceil(np.maximum(tau / THICKEST, 1.0))
+    left = (deepest - rate * before) * parts / np.maximum(tau, THICKEST)
+    shown = np.maximum(np.minimum(parts, np.ceil(left)), 1.0).astype(np.intp)
+    parent = np.repeat(np.arange(len(tau)), shown)
+    number = np.arange(len(parent)) - np.repeat(np.cumsum(shown) - shown, shown)
+
+    # 2. Find where the column within the piece has each part behind it, by halving.
+    whole = taken(pieces, parent)
+    ends = []
+    for k in (number, number + 1):
+        share = k / parts[parent]
+        low, high = np.zeros(len(k)), np.ones(len(k))
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            values = density_at(whole, middle[:, None] * POINTS)
+            passed = whole.length * middle * (values @ WEIGHTS)
+            beyond = passed > share * mass[parent]
+            high = np.where(beyond, middle, high)
+            low = np.where(beyond, low, middle)
+        ends.append(np.where(k == 0, 0.0, np.where(share >= 1.0, 1.0, high)))
+
+    # 3. Each part is a piece of its own.
+    begin, extent = ends[0], np.maximum(ends[1] - ends[0], 0.0)
+    columns_before = before[parent] + number / parts[parent] * mass[parent]
+    return part_of(whole, begin, extent), columns_before
+
+
+def evenly(pieces: Pieces, before: Array, parts: Numbers) -> tuple[Pieces, Array]:
+    """Cut each piece into parts of one length; give also the columns before them."""
+    parent = np.repeat(np.arange(len(parts)), parts)
+    number = np.arange(len(parent)) - np.repeat(np.cumsum(parts) - parts, parts)
+    begin, extent = number / parts[parent], 1.0 / parts[parent]
+    whole = taken(pieces, parent)
+    ahead = density_at(whole, begin[:, None] * POINTS) @ WEIGHTS
+    return part_of(whole, begin, extent), before[parent] + whole.length * begin * ahead
+
+
+def part_of(whole: Pieces, begin: Array, extent: Array) -> Pieces:
+    """Keep a part of each piece: where it begins and how long it is, as shares."""
+    return Pieces(
+        whole.ray,
+        whole.start + begin * whole.length,
+        extent * whole.length,
+        whole.corners,
+        whole.place + whole.step * begin,
+        whole.step * extent,
+    )
