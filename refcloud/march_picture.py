@@ -19,6 +19,7 @@ from refcloud.march.marched import marched
 from refcloud.march.multiple import Scattering, marched_multiple
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
+from refcloud.transport import LightVolume
 
 ONCE = "marched: light that is scattered more than once is left out"
 
@@ -35,6 +36,7 @@ def draw_march(
     mixing: Mixing | None = None,
     scattering: Scattering = "single",
     tolerance: float = 0.0,
+    volumes: tuple[LightVolume, ...] = (),
     observe: Observer | None = None,
 ) -> Picture:
     """Draw a cloud by marching.
@@ -53,6 +55,8 @@ def draw_march(
         As `render`; the haze counts the distance to the cloud's middle.
     tolerance
         Largest error of a channel.
+    volumes
+        As `refcloud.march.integrate`.
     observe
         Called with (name, value) for each intermediate.
 
@@ -83,6 +87,7 @@ def draw_march(
         background=None if behind is None or haze else behind.reshape(-1, 3),
         observe=observe,
         camera=camera,
+        volumes=volumes,
     )
     size = (camera.height, camera.width)
     radiance = found.radiance.reshape(*size, 3)

@@ -31,6 +31,7 @@ from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
 from refcloud.scene import View, find_scene
 from refcloud.sky import Sky
+from refcloud.transport import LightVolume
 
 Side = Annotated[int, Range(1, MOST_PIXELS, "pixels")]
 Quality = Literal["quick", "final"]
@@ -63,6 +64,7 @@ def render(
     ambient: Colour | None = None,
     mixing: Mixing | None = None,
     tolerance: Tolerance = 0.0,
+    volumes: tuple[LightVolume, ...] = (),
     quality: Quality = "final",
     seed: Seed = 0,
     observe: Observer | None = None,
@@ -110,6 +112,10 @@ def render(
         Factors on marched light without a counterpart in physics; None for none.
     tolerance
         Largest error of a channel that savings may make; 0 is exact.
+    volumes
+        Light volumes that an earlier call handed to its `observe` as "light volumes":
+        those of this cloud and these suns are not made again. Tolerance 0 has no use
+        for them. Only for marched cloud maps.
     quality
         Which size a scene has by default.
     seed
@@ -147,6 +153,7 @@ def render(
             ambient=ambient,
             mixing=mixing,
             scattering=None if scattering == "single" else scattering,
+            volumes=volumes or None,
         )
         how = tolerance, seed, observe, backend
         view = View(width, height, camera, suns, medium, look, *how)
@@ -172,6 +179,7 @@ def render(
         backend=None if backend == "numpy" else backend,
         ambient=ambient,
         mixing=mixing,
+        volumes=volumes or None,
     )
     if scattering != "single" and not march:
         expected = "single beside the method splat"
@@ -205,6 +213,7 @@ def render(
             mixing=mixing,
             scattering=scattering,
             tolerance=tolerance,
+            volumes=volumes,
             observe=observe,
         )
     else:

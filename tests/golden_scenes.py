@@ -9,7 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from refcloud import Picture, load_metaballs
+from refcloud import (
+    Camera,
+    Medium,
+    Picture,
+    Sun,
+    generate,
+    load_metaballs,
+    render,
+)
 from refcloud.raster import framebuffer, splat
 from refcloud.scenes import SCENES, Model, View
 
@@ -39,6 +47,17 @@ def blend_fan() -> Picture:
             law=("beer", "linear")[step // 2 % 2],
         )
     return Picture(buffer.pixels[..., :3])
+
+
+def marched_map() -> Picture:
+    """March a cloud map of coarse voxels, exactly, from below with the sun behind."""
+    cloud = generate(seed=7, voxel=2.8)
+    low = Camera(
+        [14.0, -18.0, 110.0], [1.4, 12.0, 0.0], width=128, height=96, fov_y=0.6
+    )
+    sun = Sun([-0.5, 0.5, -0.6], [3.2, 2.9, 2.4])
+    medium = Medium(0.5, 1.0, 0.5, "hg")
+    return render(cloud, camera=low, suns=sun, medium=medium)
 
 
 def fitted(name: str, balls: str) -> Picture:
@@ -74,5 +93,6 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
     "man-10": partial(fitted, "man-10", "man-10"),
     "man-13": partial(fitted, "man-13", "man-13"),
     "man-14": partial(fitted, "man-14", "man-13"),
+    "marched-map": marched_map,
     "multiple": partial(unfitted, "multiple", View(64, 48)),
 }

@@ -331,6 +331,7 @@ def test_voxels_too_coarse_for_their_depth_are_told() -> None:
         ),
         (lambda: render("man-10", method="march"), "method: expected none beside a"),
         (lambda: render(GRID, scattering="twice"), "scattering: expected one of"),
+        (lambda: render(BALLS, scattering="multiple"), "scattering: expected single"),
     ],
 )
 def test_what_a_method_has_no_use_for_is_refused(call, message) -> None:

@@ -15,14 +15,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer, Skipped
-from refcloud.march.cells import cropped, lattice
+from refcloud.march.cells import lattice
 from refcloud.march.fast import (
     Scale,
     Setting,
     fast,
-    light_volumes,
+    reached,
 )
 from refcloud.march.gather import Counts
 from refcloud.march.lines import frame_numbers
@@ -30,7 +29,7 @@ from refcloud.march.mixing import PHYSICAL
 from refcloud.march.sampling import CHECKED, chosen_rays, edge_rays
 from refcloud.march.sliced import SLICINGS, Slicing, sliced
 from refcloud.march.task import Task
-from refcloud.transport import sun_depths
+from refcloud.march.volumes import Volumes, volumes_of
 
 # Gauss points of a piece on checked rays: two are off by less than a hundredth of the
 # least tolerance that slabs can meet.
@@ -67,13 +66,23 @@ def to_tolerance(
     tolerance
         Largest error of a channel, above 0.
     observe
-        Called with (name, value): the rays that were checked, and errors by setting.
+        Called with (name, value): the rays that were checked, errors by setting, and
+        the light volumes.
 
     Returns
     -------
     Radiance of shape (N, 3), columns of density of shape (N,), and what is told.
     """
     watch = observe or (lambda name, value: None)
+    volumes = volumes_of(task.cloud, task.suns, task.kept)
+    radiance, column, rows, notes = _marched(task, tolerance, watch, volumes)
+    watch("light volumes", volumes.all)
+    return radiance, column, rows, notes + volumes.notes()
+
+
+def _marched(
+    task: Task, tolerance: float, watch: Observer, volumes: Volumes
+) -> tuple[Array, Array, tuple[Skipped, ...], tuple[str, ...]]:
     sample = chosen_rays(task)
     # A few rays cost less than to find out how to save.
     if tolerance < FINEST or len(task.origins) <= 2 * CHECKED or not len(sample):
@@ -87,10 +96,10 @@ def to_tolerance(
     watch("checked rays", sample)
 
     # 2. Slices, which march all rays of a camera or none.
-    inner = cropped(task.cloud)
+    inner = volumes.cloud
     tried: dict[Slicing, float] = {}
     for slicing in SLICINGS if task.camera and task.mixing == PHYSICAL else ():
-        found = by_slices(task, inner, slicing)
+        found = by_slices(task, volumes, slicing)
         if found is None:
             break
         tried[slicing] = some.error((found[0][sample], found[1][sample]), expected)
@@ -123,9 +132,8 @@ def to_tolerance(
         rays: Task, frames: NDArray[np.intp], setting: Setting, counts: Counts
     ) -> tuple[Array, Array]:
         if setting.scale not in lights:
-            lights[setting.scale] = light_volumes(
-                inner, task.suns, task.medium, task.mixing, setting.scale
-            )
+            depths = volumes.at(setting.scale)
+            lights[setting.scale] = reached(depths, task.medium, task.mixing)
         return fast(
             inner,
             small,
@@ -179,22 +187,18 @@ def to_tolerance(
 
 
 def by_slices(
-    task: Task, cloud: VoxelGrid, slicing: Slicing
+    task: Task, volumes: Volumes, slicing: Slicing
 ) -> tuple[Array, Array] | None:
     """March a camera's rays by slices; None where they cannot serve."""
     if task.camera is None:
         return None
-    depths = [
-        sun_depths(cloud, sun.direction, scale=slicing.scale, dtype="float32")
-        for sun in task.suns
-    ]
     return sliced(
-        cloud,
+        volumes.cloud,
         task.camera,
         suns=task.suns,
         medium=task.medium,
         slicing=slicing,
-        depths=depths,
+        depths=volumes.at(slicing.scale),
     )
 
 

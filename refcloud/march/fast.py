@@ -17,8 +17,9 @@ from refcloud.march.lines import STEEPEST, Frame, as_lines, by_frame, frame_numb
 from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.march.planes import planes
 from refcloud.march.steps import reaching
+from refcloud.march.volumes import Volumes
 from refcloud.optics import Medium, Sun
-from refcloud.transport import sun_depths
+from refcloud.transport import LightVolume
 
 Scale = Literal[1, 2]
 
@@ -108,12 +109,18 @@ def light_volumes(
 
     What is interpolated later is this light, not the optical depth.
     """
-    found = []
-    for sun in suns:
-        depths = sun_depths(cloud, sun.direction, scale=scale, dtype="float32").density
-        for sigma in np.atleast_1d(medium.sigma_t):
-            found.append(reaching(depths * np.float32(sigma), mixing))
-    return found
+    return reached(Volumes(cloud, suns, ()).at(scale), medium, mixing)
+
+
+def reached(
+    depths: list[LightVolume], medium: Medium, mixing: Mixing
+) -> list[NDArray[np.float32]]:
+    """Turn column densities into light, of each sun at each extinction."""
+    return [
+        reaching(volume.density * np.float32(sigma), mixing)
+        for volume in depths
+        for sigma in np.atleast_1d(medium.sigma_t)
+    ]
 
 
 def as_slabs(

@@ -17,6 +17,7 @@ from refcloud.march.rays import as_rays, shaped
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
+from refcloud.transport import LightVolume
 
 
 @checked
@@ -32,6 +33,7 @@ def integrate(
     ambient: Colour | None = None,
     mixing: Mixing = PHYSICAL,
     scattering: Scattering = "single",
+    volumes: tuple[LightVolume, ...] = (),
     observe: Observer | None = None,
 ) -> tuple[Array, Array]:
     """Integrate scattered light along any rays.
@@ -63,6 +65,10 @@ def integrate(
     scattering
         "single" counts light that is scattered once; "multiple" solves the rest
         (`refcloud.transport.scattered_light`); or that light, solved before.
+    volumes
+        Light volumes that an earlier call handed to its `observe` as "light volumes":
+        those of this cloud and these suns are not made again. Tolerance 0 has no use
+        for them.
     observe
         Called with (name, value) for each intermediate; "skipped" last.
 
@@ -108,6 +114,7 @@ def integrate(
         tolerance=tolerance,
         background=behind,
         observe=observe,
+        volumes=volumes,
     )
     if observe is not None:
         observe("skipped", found.skipped)

@@ -19,6 +19,7 @@ from refcloud.march.task import Task, completed
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
+from refcloud.transport import LightVolume
 
 # Optical depth of one voxel above which the answer of `tolerance=0` itself is off by
 # more than a ten-thousandth of white: shadows are sharper than the Gauss points.
@@ -59,6 +60,7 @@ def marched(
     background: Array | None = None,
     observe: Observer | None = None,
     camera: AnyCamera | None = None,
+    volumes: tuple[LightVolume, ...] = (),
 ) -> Marched:
     """March rays, unchecked: the inner form of `integrate`.
 
@@ -74,12 +76,17 @@ def marched(
         What lies behind each ray, shape (N, 3); None for nothing.
     camera
         Whose rays they are, row by row; None for any rays.
+    volumes
+        As `integrate`.
 
     Returns
     -------
     What was found.
     """
     if isinstance(cloud, Metaballs):
+        if volumes:
+            expected = "none beside metaballs, whose light has a closed form"
+            raise ValueError(complaint("volumes", expected, "some", "leave them out"))
         return _balls_marched(
             cloud, origins, directions, suns, medium, ambient, mixing, background
         )
@@ -96,6 +103,7 @@ def marched(
         np.zeros(3) if ambient is None else ambient,
         background,
         camera,
+        volumes,
     )
     if tolerance > 0.0:
         radiance, column, rows, notes = to_tolerance(task, tolerance, observe)

@@ -16,7 +16,7 @@ from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.transport import ScatteredLight, scattered_light
+from refcloud.transport import LightVolume, ScatteredLight, scattered_light
 
 Scattering = Literal["single", "multiple"] | ScatteredLight
 
@@ -35,6 +35,7 @@ def marched_multiple(
     background: Array | None = None,
     observe: Observer | None = None,
     camera: AnyCamera | None = None,
+    volumes: tuple[LightVolume, ...] = (),
 ) -> Marched:
     """March rays through solved light, unchecked: the inner form of `integrate`.
 
@@ -47,7 +48,7 @@ def marched_multiple(
         As `marched`.
     scattering
         "multiple", or light that was solved before for this cloud.
-    suns, medium, ambient, mixing, tolerance, background, observe, camera
+    suns, medium, ambient, mixing, tolerance, background, observe, camera, volumes
         As `marched`; half of the tolerance goes to the solution.
 
     Returns
@@ -88,6 +89,7 @@ def marched_multiple(
         tolerance=0.5 * tolerance,
         observe=observe,
         camera=camera,
+        volumes=volumes,
     )
     # 2. Light that was scattered more often.
     radiance = found.radiance + glow(cloud, origins, directions, light, tolerance)

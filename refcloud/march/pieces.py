@@ -57,25 +57,28 @@ def thinner(
     parent = np.repeat(np.arange(len(tau)), shown)
     number = np.arange(len(parent)) - np.repeat(np.cumsum(shown) - shown, shown)
 
-    # 2. Find where the column within the piece has each part behind it, by halving.
+    # 2. Find where the column within the piece has each part behind it, by halving:
+    # only in pieces that are more than one part.
+    several = np.flatnonzero(parts[parent] > 1.0)
     whole = taken(pieces, parent)
-    ends = []
-    for k in (number, number + 1):
-        share = k / parts[parent]
-        low, high = np.zeros(len(k)), np.ones(len(k))
+    thick = taken(whole, several)
+    begin, end = np.zeros(len(parent)), np.ones(len(parent))
+    for k, found in ((number, begin), (number + 1, end)):
+        share = k[several] / parts[parent[several]]
+        low, high = np.zeros(len(several)), np.ones(len(several))
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            values = density_at(whole, middle[:, None] * POINTS)
-            passed = whole.length * middle * (values @ WEIGHTS)
-            beyond = passed > share * mass[parent]
+            values = density_at(thick, middle[:, None] * POINTS)
+            passed = thick.length * middle * (values @ WEIGHTS)
+            beyond = passed > share * mass[parent[several]]
             high = np.where(beyond, middle, high)
             low = np.where(beyond, low, middle)
-        ends.append(np.where(k == 0, 0.0, np.where(share >= 1.0, 1.0, high)))
+        inner = np.where(share >= 1.0, 1.0, high)
+        found[several] = np.where(k[several] == 0, 0.0, inner)
 
     # 3. Each part is a piece of its own.
-    begin, extent = ends[0], np.maximum(ends[1] - ends[0], 0.0)
     columns_before = before[parent] + number / parts[parent] * mass[parent]
-    return part_of(whole, begin, extent), columns_before
+    return part_of(whole, begin, np.maximum(end - begin, 0.0)), columns_before
 
 
 def evenly(pieces: Pieces, before: Array, parts: Numbers) -> tuple[Pieces, Array]:

@@ -14,6 +14,7 @@ from refcloud.march.cells import Lattice
 from refcloud.march.exact import exact
 from refcloud.march.mixing import Mixing
 from refcloud.optics import Medium, Sun
+from refcloud.transport import LightVolume
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,8 @@ class Task:
         What lies behind each ray, shape (N, 3); None where alpha is wanted.
     camera
         Whose rays they are, row by row; None for any rays.
+    kept
+        Light volumes of earlier calls.
     """
 
     cloud: VoxelGrid
@@ -49,6 +52,7 @@ class Task:
     ambient: Array
     background: Array | None
     camera: AnyCamera | None = None
+    kept: tuple[LightVolume, ...] = ()
 
     def taken(self, which: NDArray[np.intp]) -> Task:
         """Keep some rays."""

@@ -28,7 +28,13 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "generate": [(rc.generate, {"observe"})],
     "approximate": [(rc.approximate, {"grid", "observe"}), (Outputs, set())],
     "render": [
-        (rc.render, {"cloud", "camera", "suns", "medium", "haze", "mixing", "observe"}),
+        (
+            rc.render,
+            {
+                *("cloud", "camera", "suns", "medium", "haze", "mixing", "observe"),
+                "volumes",
+            },
+        ),
         (rc.Camera, {"width", "height"}),
         (rc.Sun, set()),
         (rc.Medium, set()),
