@@ -27,8 +27,8 @@ from refcloud.lighting.lightview import light_view
 from refcloud.lighting.literal_light import carried_literally
 
 TOLERANCES = (1e-5, 1e-3, 1.5e-2)
-COUNTS = (1200, 10_000, 100_000)
-QUICK = 100
+# Numbers of balls, and those of a quick look: small, and no two alike.
+COUNTS = {1200: 100, 10_000: 200, 100_000: 400}
 LITERAL_SIDE, SIDE, FINE_SIDE = 512, 208, 700  # pixels of the sun's buffer
 # Light that is off by less than this share of the sun's: the buffer's own error is
 # larger, whether hard discs at 512 or antialiased ones at 208.
@@ -142,9 +142,9 @@ SPLAT = Subject(
         " picture, from the literal loop; of pass 1 from a converged buffer"
     ),
     lists=(
-        *((second_pass, count, QUICK) for count in COUNTS),
-        (cumulus_look, COUNTS[0], QUICK),
-        *((first_pass, count, QUICK) for count in COUNTS[:2]),
+        *((second_pass, count, quick) for count, quick in COUNTS.items()),
+        (cumulus_look, 1200, COUNTS[1200]),
+        *((first_pass, count, COUNTS[count]) for count in (1200, 10_000)),
     ),
     peers=("moderngl",),
     unit=MS,

@@ -92,6 +92,9 @@ def fragments(view: LightView, look: Look, dtype: type) -> Fragments | None:
         return None
     ball = np.repeat(np.arange(len(order)), high)
     j = np.arange(len(ball)) - np.repeat(np.cumsum(high) - high - top, high)
+    #    Spans are sorted already here, row after row: there are fewer than fragments.
+    sorted_ = np.argsort(j.astype(np.uint16), kind="stable")  # counted: short keys
+    ball, j = ball[sorted_], j[sorted_]
     aside = (j + 0.5 - y[ball]) / radius[ball]
     aside *= aside
     first, count = left[ball], wide[ball]
@@ -102,15 +105,14 @@ def fragments(view: LightView, look: Look, dtype: type) -> Fragments | None:
         end = np.minimum(begin + length, first + count)
         first = np.maximum(begin, first)
         count = np.maximum(end - first, 0)
-    if float(count.sum(dtype=np.float64)) > MOST_FRAGMENTS:
+    many = int(count.sum(dtype=np.float64))
+    if many > MOST_FRAGMENTS:
         return None
 
     # 2. One fragment for each pixel of each span: q, footprint, what the mean reads.
-    before = np.cumsum(count) - count
-    step = np.arange(int(count.sum()))
-    pixel = step + np.repeat(j * side + first - before, count)
-    q: Array = np.asarray(step + np.repeat(first - before, count), np.float64)
-    q += 0.5
+    shift = first - (np.cumsum(count) - count)
+    column = np.arange(many) + np.repeat(shift, count)
+    q: Array = np.asarray(column, np.float64) + 0.5
     q -= np.repeat(x[ball], count)
     r = np.repeat(radius[ball], count)
     q /= r
@@ -129,32 +131,36 @@ def fragments(view: LightView, look: Look, dtype: type) -> Fragments | None:
         q += r
         q += soft
         read = np.maximum(np.minimum(q, 1.0, out=q), 0.0, out=q)
-    ball = np.repeat(ball, count)
-    total: Array = np.bincount(ball, read, minlength=len(order)).astype(np.float64)
+    row, number = np.repeat(j, count), np.repeat(order[ball], count)
+    total: Array = np.bincount(number, read, minlength=len(order)).astype(np.float64)
 
     # 3. An area that holds no pixel's centre reads the nearest pixel.
-    lost = np.flatnonzero(total <= 0.0)
+    lost = np.flatnonzero(total[order] <= 0.0)
     if len(lost):
         i, j = (
             np.minimum(np.clip(at[lost], 0.0, side).astype(np.intp), side - 1)
             for at in (x, y)
         )
-        joined = np.argsort(np.concatenate([ball, lost]), kind="stable")
-        pixel = np.append(pixel, j * side + i)[joined]
-        ball = np.append(ball, lost)[joined]
+        near = np.concatenate([np.repeat(ball, count), lost])
+        row = np.append(row, j)
+        joined = np.lexsort((near, row))
+        row, number = row[joined], order[near[joined]]
+        column = np.append(column, i)[joined]
         weight = np.append(weight, np.zeros(len(lost)))[joined]
         read = np.append(read, np.ones(len(lost)))[joined]
-        total[lost] = 1.0
-    by_ball = np.empty(len(order))
-    by_ball[order] = total
-    rows = np.stack([order[ball], weight, read], axis=1, dtype=dtype, casting="unsafe")
-    moved, counts, used = _by_slots(pixel, side)
-    number, weight, read = rows.take(moved, axis=0).T  # one look-up for the three
+        total[order[lost]] = 1.0
+
+    # 4. Slot after slot. What is looked up is made short first.
+    moved, counts, used = _by_slots(row, column, side)
+    weight = weight.astype(dtype)
+    shown = weight.take(moved)
     return Fragments(
-        number.astype(np.intp),
-        np.ascontiguousarray(weight),
-        np.ascontiguousarray(read),
-        by_ball,
+        number.astype(np.int32).take(moved).astype(np.intp),
+        shown,
+        shown
+        if look.readback == "footprint" and not len(lost)
+        else read.astype(dtype).take(moved),
+        total,
         counts,
         used,
     )
@@ -167,30 +173,31 @@ def _span(place: Array, reach: Array, side: int) -> tuple[Whole, Whole]:
     return low, np.maximum(high - low, 0)
 
 
-def _by_slots(pixel: Whole, side: int) -> tuple[Whole, list[int], Whole]:
-    """Order fragments, which come near to far, by slot and by length of the list.
+def _by_slots(row: Whole, column: Whole, side: int) -> tuple[Whole, list[int], Whole]:
+    """Order fragments by slot and by length of the list.
+
+    They come row after row, near to far in each.
 
     Returns
     -------
     Where each fragment of that order comes from, how many each slot has, the pixels.
     """
-    # 1. By pixel; a stable sort leaves each pixel's list near to far. numpy counts
-    #    keys of 16 bits in no time: longer ones are sorted by column, then by row.
-    if side * side <= 1 << 16:
-        order = np.argsort(pixel.astype(np.uint16), kind="stable")
-    else:
-        order = np.argsort((pixel % side).astype(np.uint16), kind="stable")
-        rows = (pixel // side).astype(np.uint16)[order]
-        order = order[np.argsort(rows, kind="stable")]
-    length = np.bincount(pixel, minlength=side * side)
-    slot = np.arange(len(pixel)) - np.repeat(np.cumsum(length) - length, length)
+    # 1. By column, then row; a stable sort leaves each pixel's list near to far. numpy
+    #    counts keys of 8 bits in one go, of 16 in two: others take many.
+    short = column.astype(np.uint8 if side <= 1 << 8 else np.uint16)
+    order = np.argsort(short, kind="stable")
+    length = np.bincount(column * side + row, minlength=side * side)
     # 2. Pixels with long lists first: those of each slot are then the first ones.
-    ranked = np.argsort(-length, kind="stable")
-    rank = np.empty_like(ranked)
-    rank[ranked] = np.arange(len(ranked))
-    counts = np.bincount(slot)
-    place = (np.cumsum(counts) - counts)[slot] + np.repeat(rank, length)
-    moved = np.empty_like(order)
-    moved[place] = order
-    used = ranked[: int(counts[0]) if len(counts) else 0]
-    return moved, counts.tolist(), used
+    longest = int(length.max(initial=0))
+    short = (longest - length).astype(np.uint16 if longest < 1 << 16 else np.intp)
+    ranked = np.argsort(short, kind="stable")
+    begin = (np.cumsum(length) - length)[ranked]
+    shorter = np.bincount(length, minlength=longest + 1).cumsum()
+    counts = (len(length) - shorter[:longest]).tolist()
+    place = np.empty(len(order), np.intp)
+    end = 0
+    for slot, count in enumerate(counts):
+        np.add(begin[:count], slot, out=place[end : end + count])
+        end += count
+    used = ranked[: counts[0] if counts else 0]
+    return order.take(place), counts, used % side * side + used // side

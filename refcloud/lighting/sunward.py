@@ -7,32 +7,20 @@ framebuffer is read back over its projection: the mean is the light that reaches
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
-
 import numpy as np
 
 from refcloud.checking import checked
-from refcloud.conventions import Array, Observer, Skipped, Tolerance
+from refcloud.conventions import Observer, Skipped, Tolerance
+from refcloud.lighting.coarser import Sized, sized_share
 from refcloud.lighting.colours import gain_of
-from refcloud.lighting.depths import ball_depths
-from refcloud.lighting.fragments import fragments, fragments_per_ball
-from refcloud.lighting.in_turn import carried_in_turn
-from refcloud.lighting.lightview import LightView, light_view
+from refcloud.lighting.lightview import light_view
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import Look, LookName, named
 from refcloud.lighting.reuse import same_lights
-from refcloud.lighting.sweeps import carried, largest_gain
+from refcloud.lighting.share import Carry
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun, phase
-from refcloud.raster import framebuffer
 
-# Errors of a share that float32 may use up: lists of hundreds of balls round below it.
-LEAST_FLOAT32 = 3e-4
-# Pixels of a ball from which one ball after the other is sooner done than sweeps over
-# all, which are many where they are to be exact (measured on the benchmark's scene).
-MANY, MANY_EXACT = 500.0, 250.0
-MOST_GAIN = 0.9  # and gains that do not magnify these roundings more than tenfold
 FROM_ABOVE = np.array([0.0, 1.0, 0.0])
 
 
@@ -64,7 +52,7 @@ def sunward(
         The rules, or their name.
     tolerance
         Largest change of a ball's colour, toward any eye, that ending the sweeps early
-        may make; 0 carries the light as exactly as float64 allows.
+        and smaller buffers may make; 0 carries the light as exactly as float64 allows.
     earlier
         What an earlier call of that tolerance gave: a light that shines on the same
         balls by the same rules as there is not carried again (L15).
@@ -75,7 +63,7 @@ def sunward(
 
     Returns
     -------
-    The lit balls; their `skipped` tells of the sweeps.
+    The lit balls; their `skipped` tells of the sweeps and the buffers.
 
     Raises
     ------
@@ -85,10 +73,6 @@ def sunward(
     Source: paper M, eq 26 to 28, L04 to L09, L12, L13; E22 to E27.
     """
     return lit_by(balls, suns, medium, named(look), tolerance, earlier, observe)
-
-
-# Carries one light over one channel, ball after ball, as `carried_in_turn` does.
-Carry = Callable[[LightView, Array, float, Look, float], tuple[Array, Array]]
 
 
 def lit_by(
@@ -127,7 +111,7 @@ def lit_by(
     worth = worth_of_light(balls, suns, medium, rules)
     light = np.zeros((len(suns), count, 3))
     ambient = np.zeros((count, 3))
-    sweeps: list[Sweeps] = []
+    carried: list[Sized] = []
     kept = same_lights(earlier, balls, suns, medium, rules)
     for number, (name, direction, color) in enumerate(lights):
         if not color.any() or not count:
@@ -139,7 +123,7 @@ def lit_by(
         if earlier is not None and not is_sun and kept.ambient:
             ambient = earlier.ambient
             continue
-        share, done = light_share(
+        found = sized_share(
             light_view(balls, direction, rules.buffer if is_sun else rules.sky_buffer),
             medium,
             rules,
@@ -148,18 +132,14 @@ def lit_by(
             _labelled(watch, name),
             carry,
         )
-        sweeps += done
+        carried.append(found)
         if is_sun:
-            light[number] = share * color
+            light[number] = found.share * color
         else:
-            ambient += share * color
+            ambient += found.share * color
     skipped: list[Skipped] = []
-    if tolerance > 0.0 and sweeps:
-        # Nilpotent: as many sweeps as balls are exact, whatever the cloud.
-        left = sum(max(count - run.number, 0) for run in sweeps)
-        bound = worth * max(run.bound for run in sweeps)
-        of = count * len(sweeps)
-        skipped.append(Skipped("light", "sweeps over all balls", left, of, bound))
+    if tolerance > 0.0:
+        skipped += _savings(carried, count, worth)
     if earlier is not None and kept.number:
         what = "lights that were carried before"
         skipped.append(Skipped("light", what, kept.number, len(suns) + 2))
@@ -169,80 +149,25 @@ def lit_by(
     )
 
 
+def _savings(carried: list[Sized], count: int, worth: float) -> list[Skipped]:
+    """Report the sweeps and the pixels that a tolerance saved, over all lights."""
+    rows = []
+    if sweeps := [run for found in carried for run in found.sweeps]:
+        # Nilpotent: as many sweeps as balls are exact, whatever the cloud.
+        left = sum(max(count - run.number, 0) for run in sweeps)
+        bound = worth * max(run.bound for run in sweeps)
+        what = "sweeps over all balls"
+        rows.append(Skipped("light", what, left, count * len(sweeps), bound))
+    if left := sum(found.whole - found.pixels for found in carried):
+        what, of = "pixels of the lights' buffers", sum(f.whole for f in carried)
+        bound = worth * max(found.bound for found in carried)
+        rows.append(Skipped("light", what, left, of, bound))
+    return rows
+
+
 def _labelled(watch: Observer, light: str) -> Observer:
     """Let what is watched say which light it is of."""
     return lambda name, value: watch(f"{light} {name}", value)
-
-
-class Sweeps(NamedTuple):
-    """How often one light was swept over one channel, and the error that is left."""
-
-    number: int
-    bound: float
-
-
-def light_share(
-    view: LightView,
-    medium: Medium,
-    look: Look,
-    forward: float,
-    most: float,
-    watch: Observer,
-    carry: Carry | None = None,
-) -> tuple[Array, list[Sweeps]]:
-    """Give the share of one light that reaches each ball, unchecked.
-
-    Parameters
-    ----------
-    view
-        The balls as the light sees them.
-    medium, look
-        As `sunward`.
-    forward
-        k of the "split" rule.
-    most
-        Largest error of a share.
-    watch
-        Called with (name, value).
-    carry
-        How the light is carried; None for the fastest way in numpy.
-
-    Returns
-    -------
-    Shape (N, 3), at least 0; and the sweeps of each channel.
-    """
-    # A grey medium is carried once, a coloured one channel by channel.
-    channels: dict[tuple[float, float], list[int]] = {}
-    keys = zip(medium.sigma_t_rgb.tolist(), medium.albedo_rgb.tolist(), strict=True)
-    for channel, key in enumerate(keys):
-        channels.setdefault(key, []).append(channel)
-    depths = {key: ball_depths(view.balls, key[0], look) for key in channels}
-    rounds = most >= LEAST_FLOAT32 and all(
-        largest_gain(depths[key], key[1], look, forward) <= MOST_GAIN
-        for key in channels
-    )
-    wide = fragments_per_ball(view) > (MANY if most > 0.0 else MANY_EXACT)
-    found = None
-    if carry is None and not wide:
-        found = fragments(view, look, np.float32 if rounds else np.float64)
-    share = np.empty((len(view.radius), 3))
-    sweeps: list[Sweeps] = []
-    for key, tau in depths.items():
-        watch("order", view.order)
-        if found is None:
-            in_turn = carry or carried_in_turn
-            reached, plane = in_turn(view, tau, key[1], look, forward)
-        else:
-            result = carried(found, tau, key[1], look, forward, most)
-            sweeps.append(Sweeps(len(result.changes), result.bound))
-            reached = result.reached
-            plane = np.ones(view.side**2)
-            plane[found.pixel] = result.buffer
-        buffer = framebuffer(view.side, view.side, color=np.ones(4))
-        buffer.pixels[..., :3] = plane.reshape(view.side, view.side, 1)
-        watch("buffer", buffer)
-        share[:, channels[key]] = reached[:, None]
-    return share, sweeps
 
 
 def worth_of_light(

@@ -23,9 +23,16 @@ def test_footprints_and_depths_are_the_scenes(count: int) -> None:
     assert 0.5 <= tau.min() < 0.6 < 1.4 < tau.max() <= 1.5
 
 
+def test_no_list_is_timed_twice_be_it_quick_or_not() -> None:
+    for quick in (False, True):
+        listed = [(make, small if quick else full) for make, full, small in SPLAT.lists]
+        assert len(set(listed)) == len(listed)
+
+
 @pytest.mark.slow
 def test_every_contender_stays_within_its_error() -> None:
     rows = run(SPLAT, quick=True)
+    assert len({(row.task, row.name) for row in rows}) == len(rows)
     named = [row.name for row in rows if "tolerance=" in row.name]
     assert {float(name.split("=")[1]) for name in named} == set(splat.TOLERANCES)
     for row in rows:

@@ -1,0 +1,98 @@
+"""The share of one light that reaches each ball, carried as suits its view."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from refcloud.conventions import Array, Observer
+from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.fragments import fragments, fragments_per_ball
+from refcloud.lighting.in_turn import carried_in_turn
+from refcloud.lighting.lightview import LightView
+from refcloud.lighting.look import Look
+from refcloud.lighting.sweeps import carried, largest_gain
+from refcloud.optics import Medium
+from refcloud.raster import framebuffer
+
+# Errors of a share that float32 may use up: lists of hundreds of balls round below it.
+LEAST_FLOAT32 = 3e-4
+# Pixels of a ball from which one ball after the other is sooner done than sweeps over
+# all, which are many where they are to be exact (measured on the benchmark's scene).
+MANY, MANY_EXACT = 500.0, 250.0
+MOST_GAIN = 0.9  # and gains that do not magnify these roundings more than tenfold
+# Carries one light over one channel, ball after ball, as `carried_in_turn` does.
+Carry = Callable[[LightView, Array, float, Look, float], tuple[Array, Array]]
+
+
+class Sweeps(NamedTuple):
+    """How often one light was swept over one channel, and the error that is left."""
+
+    number: int
+    bound: float
+
+
+def light_share(
+    view: LightView,
+    medium: Medium,
+    look: Look,
+    forward: float,
+    most: float,
+    watch: Observer,
+    carry: Carry | None = None,
+) -> tuple[Array, list[Sweeps]]:
+    """Give the share of one light that reaches each ball, unchecked.
+
+    Parameters
+    ----------
+    view
+        The balls as the light sees them.
+    medium, look
+        As `sunward`.
+    forward
+        k of the "split" rule.
+    most
+        Largest error of a share.
+    watch
+        Called with (name, value).
+    carry
+        How the light is carried; None for the fastest way in numpy.
+
+    Returns
+    -------
+    Shape (N, 3), at least 0; and the sweeps of each channel.
+    """
+    # A grey medium is carried once, a coloured one channel by channel.
+    channels: dict[tuple[float, float], list[int]] = {}
+    keys = zip(medium.sigma_t_rgb.tolist(), medium.albedo_rgb.tolist(), strict=True)
+    for channel, key in enumerate(keys):
+        channels.setdefault(key, []).append(channel)
+    depths = {key: ball_depths(view.balls, key[0], look) for key in channels}
+    rounds = most >= LEAST_FLOAT32 and all(
+        largest_gain(depths[key], key[1], look, forward) <= MOST_GAIN
+        for key in channels
+    )
+    wide = fragments_per_ball(view) > (MANY if most > 0.0 else MANY_EXACT)
+    found = None
+    if carry is None and not wide:
+        found = fragments(view, look, np.float32 if rounds else np.float64)
+    share = np.empty((len(view.radius), 3))
+    sweeps: list[Sweeps] = []
+    for key, tau in depths.items():
+        watch("order", view.order)
+        if found is None:
+            in_turn = carry or carried_in_turn
+            reached, plane = in_turn(view, tau, key[1], look, forward)
+        else:
+            result = carried(found, tau, key[1], look, forward, most)
+            sweeps.append(Sweeps(len(result.changes), result.bound))
+            reached = result.reached
+            plane = np.ones(view.side**2)
+            plane[found.pixel] = result.buffer
+        buffer = framebuffer(view.side, view.side, color=np.ones(4))
+        buffer.pixels[..., :3] = plane.reshape(view.side, view.side, 1)
+        watch("buffer", buffer)
+        share[:, channels[key]] = reached[:, None]
+    return share, sweeps
