@@ -14,8 +14,9 @@ from twins.lighting import looks, scattered_balls, seeds
 from refcloud.lighting import fragments, share
 from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.light_tiles import EDGE, READ, light_tiles
-from refcloud.lighting.lightview import light_view
+from refcloud.lighting.lightview import handed_on, light_view
 from refcloud.lighting.literal_light import carried_literally
+from refcloud.lighting.look import MAN
 from refcloud.lighting.share import light_share
 from refcloud.lighting.sweeps import carried
 from refcloud.optics import Medium
@@ -92,3 +93,15 @@ def test_tiles_serve_only_where_their_roundings_are_allowed(monkeypatch) -> None
     for readback in ("disc", "square"):  # a rounded distance would make them jump
         rules = dataclasses.replace(EXTENDED, readback=readback)
         assert light_tiles(view, rules, np.ones(30)) is None
+
+
+def test_what_is_scattered_holds_in_float32_for_any_albedo() -> None:
+    # Next to no albedo the depth where eq 26 makes light is beyond float32's numbers,
+    # and kappa may be below them: 1e37 times what it loses there is 1e-8.
+    tau = np.array([0.0, 1.0, 1e37])
+    for albedo in (1e-45, 1e-30, 1e-3, 0.9):
+        share = handed_on(MAN, albedo, 0.0)
+        short = share(tau.astype(np.float32))
+        assert short.dtype == np.float32
+        np.testing.assert_allclose(short, share(tau), rtol=1e-6, atol=1e-8)
+        np.testing.assert_allclose(share(tau[:2]), share(tau)[:2], rtol=1e-15)
