@@ -62,6 +62,7 @@ def sized_share(
     look: Look,
     forward: float,
     most: float,
+    shrinks: bool,
     watch: Observer,
     carry: Carry | None = None,
 ) -> Sized:
@@ -74,17 +75,19 @@ def sized_share(
     medium, look, forward, watch, carry
         As `light_share`.
     most
-        Largest error of a share; 0 keeps the buffer, and so does a way to carry.
+        Largest error of a share.
+    shrinks
+        Whether half of that is kept for smaller buffers: see `may_shrink`.
 
     Returns
     -------
     The light.
     """
     whole = view.side**2
-    if carry is None and most > 0.0 and look.readback in PER_RISE:
+    if shrinks:
         allowed = BUFFER * most
         coarse = None  # the light at half the side that is tried
-        for side in _promising(view, medium, look, allowed):
+        for side in _promising(view, medium, look, most):
             fine, sweeps, seen = _at(side, view, medium, look, forward, SWEEPS * most)
             if coarse is not None:
                 change = np.abs(fine - coarse[0]).max(initial=0.0)
@@ -106,16 +109,33 @@ def sized_share(
 NONE = Sweeps(0, 0.0)
 
 
+def may_shrink(view: LightView, medium: Medium, look: Look, most: float) -> bool:
+    """Tell whether a light's buffer may be smaller than the rules', as far as is seen.
+
+    Parameters
+    ----------
+    view, medium, look, most
+        As `sized_share`; an error of 0 keeps the buffer.
+
+    Returns
+    -------
+    Whether it is worth a try.
+    """
+    return bool(_promising(view, medium, look, most))
+
+
 def _promising(view: LightView, medium: Medium, look: Look, most: float) -> list[int]:
     """List the sides to try, ascending, after half of the first; none may be worth it.
 
     Half the rules' own side is the largest: from there on nothing is saved.
     """
-    sides = []
+    sides: list[int] = []
     side = view.side // 2
+    if most <= 0.0 or look.readback not in PER_RISE:
+        return sides
     while side >= LEAST_SIDE:
         rise = _rise(view, medium, look, side)
-        if rise < LEAST_RISE or PER_RISE[look.readback] / rise**2 > most:
+        if rise < LEAST_RISE or PER_RISE[look.readback] / rise**2 > BUFFER * most:
             break
         sides.append(side)
         side //= 2

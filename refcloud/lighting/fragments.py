@@ -38,15 +38,19 @@ class Fragments:
     ball
         Number of each fragment's ball, shape (M,).
     weight
-        Its footprint there, shape (M,); 0 where it is only read.
+        Its footprint there, shape (M,), or (M, S) where S pixels go together, as in
+        `light_tiles`; 0 where it is only read.
     read
-        Its weight in the ball's mean, shape (M,).
+        Its weight in the ball's mean, that shape.
     total
         Sum of these weights by ball, shape (N,), above 0.
     counts
         Fragments of each slot, from the first slot on, shape (slots,), descending.
     pixel
-        Numbers of the pixels in the order of each slot, shape (counts[0],).
+        Numbers of the pixels in the order of each slot, shape (counts[0],), or
+        (counts[0], S); the buffer's side squared for pixels outside it.
+    roundings
+        What they do to a mean of light 1 at most, in eps.
     """
 
     ball: Whole
@@ -55,6 +59,16 @@ class Fragments:
     total: Array
     counts: list[int]
     pixel: Whole
+    roundings: float
+
+    def spread(self, per_ball: Floats) -> Floats:
+        """Give each fragment its ball's number: shape (M,), or (M, 1)."""
+        return per_ball.take(self.ball).reshape(-1, *(1,) * (self.weight.ndim - 1))
+
+    @property
+    def rough(self) -> float:
+        """Bound what rounding does to a mean, of light 1."""
+        return float(np.finfo(self.weight.dtype).eps) * self.roundings
 
 
 def fragments_per_ball(view: LightView) -> float:
@@ -163,6 +177,7 @@ def fragments(view: LightView, look: Look, dtype: type) -> Fragments | None:
         total,
         counts,
         used,
+        len(counts) + 8.0,
     )
 
 
@@ -188,16 +203,33 @@ def _by_slots(row: Whole, column: Whole, side: int) -> tuple[Whole, list[int], W
     order = np.argsort(short, kind="stable")
     length = np.bincount(column * side + row, minlength=side * side)
     # 2. Pixels with long lists first: those of each slot are then the first ones.
+    ranked, counts, place = slot_after_slot(length)
+    used = ranked[: counts[0] if counts else 0]
+    return order.take(place), counts, used % side * side + used // side
+
+
+def slot_after_slot(length: Whole) -> tuple[Whole, list[int], Whole]:
+    """Order lists by length, and their entries slot after slot.
+
+    Parameters
+    ----------
+    length
+        Of each list, shape (L,); they lie one after the other.
+
+    Returns
+    -------
+    The lists, the longest first; how many have each slot; where each slot's entries
+    are, in that order.
+    """
     longest = int(length.max(initial=0))
     short = (longest - length).astype(np.uint16 if longest < 1 << 16 else np.intp)
     ranked = np.argsort(short, kind="stable")
     begin = (np.cumsum(length) - length)[ranked]
     shorter = np.bincount(length, minlength=longest + 1).cumsum()
     counts = (len(length) - shorter[:longest]).tolist()
-    place = np.empty(len(order), np.intp)
+    place = np.empty(sum(counts), np.intp)
     end = 0
     for slot, count in enumerate(counts):
         np.add(begin[:count], slot, out=place[end : end + count])
         end += count
-    used = ranked[: counts[0] if counts else 0]
-    return order.take(place), counts, used % side * side + used // side
+    return ranked, counts, place

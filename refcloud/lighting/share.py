@@ -11,6 +11,7 @@ from refcloud.conventions import Array, Observer
 from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.fragments import fragments, fragments_per_ball
 from refcloud.lighting.in_turn import carried_in_turn
+from refcloud.lighting.light_tiles import light_tiles
 from refcloud.lighting.lightview import LightView
 from refcloud.lighting.look import Look
 from refcloud.lighting.sweeps import carried, largest_gain
@@ -22,6 +23,7 @@ LEAST_FLOAT32 = 3e-4
 # Pixels of a ball from which one ball after the other is sooner done than sweeps over
 # all, which are many where they are to be exact (measured on the benchmark's scene).
 MANY, MANY_EXACT = 500.0, 250.0
+MOST_ROUGH = 2.0 / 3.0  # of what is allowed: what roundings of tiles may do
 MOST_GAIN = 0.9  # and gains that do not magnify these roundings more than tenfold
 # Carries one light over one channel, ball after ball, as `carried_in_turn` does.
 Carry = Callable[[LightView, Array, float, Look, float], tuple[Array, Array]]
@@ -70,13 +72,15 @@ def light_share(
     for channel, key in enumerate(keys):
         channels.setdefault(key, []).append(channel)
     depths = {key: ball_depths(view.balls, key[0], look) for key in channels}
-    rounds = most >= LEAST_FLOAT32 and all(
-        largest_gain(depths[key], key[1], look, forward) <= MOST_GAIN
-        for key in channels
-    )
-    wide = fragments_per_ball(view) > (MANY if most > 0.0 else MANY_EXACT)
+    kappa = max(largest_gain(depths[key], key[1], look, forward) for key in channels)
+    rounds = most >= LEAST_FLOAT32 and kappa <= MOST_GAIN
     found = None
-    if carry is None and not wide:
+    if carry is None and rounds:
+        found = light_tiles(view, look, np.max(list(depths.values()), axis=0))
+        if found is not None and found.rough > MOST_ROUGH * (1.0 - kappa) * most:
+            found = None
+    wide = fragments_per_ball(view) > (MANY if most > 0.0 else MANY_EXACT)
+    if carry is None and found is None and not wide:
         found = fragments(view, look, np.float32 if rounds else np.float64)
     share = np.empty((len(view.radius), 3))
     sweeps: list[Sweeps] = []
@@ -89,8 +93,9 @@ def light_share(
             result = carried(found, tau, key[1], look, forward, most)
             sweeps.append(Sweeps(len(result.changes), result.bound))
             reached = result.reached
-            plane = np.ones(view.side**2)
+            plane = np.ones(view.side**2 + 1)  # one more for all outside
             plane[found.pixel] = result.buffer
+            plane = plane[:-1]
         buffer = framebuffer(view.side, view.side, color=np.ones(4))
         buffer.pixels[..., :3] = plane.reshape(view.side, view.side, 1)
         watch("buffer", buffer)

@@ -11,7 +11,7 @@ import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Observer, Skipped, Tolerance
-from refcloud.lighting.coarser import Sized, sized_share
+from refcloud.lighting.coarser import Sized, may_shrink, sized_share
 from refcloud.lighting.colours import gain_of
 from refcloud.lighting.lightview import light_view
 from refcloud.lighting.lit import LitMetaballs
@@ -113,8 +113,20 @@ def lit_by(
     ambient = np.zeros((count, 3))
     carried: list[Sized] = []
     kept = same_lights(earlier, balls, suns, medium, rules)
-    for number, (name, direction, color) in enumerate(lights):
-        if not color.any() or not count:
+    most = tolerance / worth if worth > 0.0 else 0.0
+    views = [
+        light_view(balls, way, rules.buffer if k < len(suns) else rules.sky_buffer)
+        if color.any() and count
+        else None
+        for k, (_, way, color) in enumerate(lights)
+    ]
+    # Where one buffer may shrink all sweeps get less, so that the bounds add up.
+    shrinks = carry is None and any(
+        may_shrink(view, medium, rules, most) for view in views if view is not None
+    )
+    for number, (name, _, color) in enumerate(lights):
+        view = views[number]
+        if view is None:
             continue
         is_sun = number < len(suns)
         if earlier is not None and is_sun and number in kept.suns:
@@ -124,11 +136,12 @@ def lit_by(
             ambient = earlier.ambient
             continue
         found = sized_share(
-            light_view(balls, direction, rules.buffer if is_sun else rules.sky_buffer),
+            view,
             medium,
             rules,
             rules.forward if is_sun else rules.sky_forward,
-            tolerance / worth if worth > 0.0 else 0.0,
+            most,
+            shrinks,
             _labelled(watch, name),
             carry,
         )

@@ -25,6 +25,7 @@ from refcloud.lighting.lightview import handed_on
 from refcloud.lighting.look import Look
 from refcloud.raster.tiles import DEEPEST
 
+CACHED = 1 << 15  # fragments whose g and T are computed at a time
 ROUNDED = 1e-15  # of the light: sweeps that change less only move last bits
 
 
@@ -78,27 +79,33 @@ def carried(
     on_axis = scatter(tau)
     dtype = found.weight.dtype
     if look.transmittance == "linear":
-        g = found.weight * on_axis.astype(dtype).take(found.ball)
-        T = 1.0 - found.weight * (-np.expm1(-tau)).astype(dtype).take(found.ball)
+        g: Floats = found.weight * found.spread(on_axis.astype(dtype))
+        T: Floats = 1.0 - found.weight * found.spread((-np.expm1(-tau)).astype(dtype))
     else:
         deep = np.minimum(tau, DEEPEST[dtype.type]).astype(dtype)
-        thickness = found.weight * deep.take(found.ball)
-        g = scatter(thickness)
-        T = np.exp(-thickness)
+        depth = found.spread(deep)
+        both: Floats = np.empty((2, *found.weight.shape), dtype)  # in large pages
+        g, T = both[0], both[1]
+        piece = max(CACHED * len(g) // max(g.size, 1), 1)
+        for begin in range(0, len(g), piece):
+            here = slice(begin, begin + piece)
+            thickness = found.weight[here] * depth[here]
+            g[here] = scatter(thickness)
+            np.negative(thickness, out=thickness)
+            np.exp(thickness, out=T[here])
     kappa = largest_gain(tau, albedo, look, forward)
 
     # 2. The first guess: every pixel's light meets the ball as if it were the mean.
-    reached = _read(found, T + g, None, len(tau))[0]
+    reached = _read(found, T + g, None, None, len(tau))[0]
     # 3. Sweep until the proved bound is small enough.
     target = max(most, ROUNDED)
     changes: list[float] = []
     # Each step of a list rounds, and a change smaller than that means nothing.
-    rough = float(np.finfo(dtype).eps) * (len(found.counts) + 8.0)
+    rough = found.rough
     still = ROUNDED if dtype == np.float64 else rough
     while True:
-        sent = reached.astype(dtype).take(found.ball)
-        sent *= g
-        again, buffer = _read(found, T, sent, len(tau))
+        sent = found.spread(reached.astype(dtype))
+        again, buffer = _read(found, T, g, sent, len(tau))
         change = float(np.abs(again - reached).max(initial=0.0))
         reached = again
         changes.append(change)
@@ -136,24 +143,30 @@ def largest_gain(tau: Array, albedo: float, look: Look, forward: float) -> float
 
 
 def _read(
-    found: Fragments, factor: Floats, added: Floats | None, count: int
+    found: Fragments, T: Floats, g: Floats | None, sent: Floats | None, count: int
 ) -> tuple[Array, Floats]:
-    """Run c = factor c + added over every pixel's list, and read the mean of each ball.
+    """Run c = T c + g sent over every pixel's list, and read the mean of each ball.
 
     Returns
     -------
     The means, shape (count,), and the buffer behind the last ball.
     """
-    buffer = np.ones(len(found.pixel), factor.dtype)
-    before = np.empty_like(factor)  # what each fragment finds in the buffer
+    buffer = np.ones(found.pixel.shape, T.dtype)
+    space = np.empty_like(buffer)
+    together = T.ndim == 2
+    before = np.empty(len(T) if together else T.shape, T.dtype)  # found in the buffer
     begin = 0
     for n in found.counts:
         end = begin + n
         here = buffer[:n]
-        before[begin:end] = here
-        here *= factor[begin:end]
-        if added is not None:
-            here += added[begin:end]
+        if together:
+            np.vecdot(here, found.read[begin:end], out=before[begin:end])
+        else:
+            before[begin:end] = here
+        here *= T[begin:end]
+        if g is not None and sent is not None:
+            here += np.multiply(g[begin:end], sent[begin:end], out=space[:n])
         begin = end
-    before *= found.read
+    if not together:
+        before *= found.read
     return np.bincount(found.ball, before, minlength=count) / found.total, buffer

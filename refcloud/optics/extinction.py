@@ -181,6 +181,8 @@ def held_share(tau: Array, kappa: float, limit: float) -> Array:
     The same shape as tau.
     """
     # Past limit + 1 the second term is the smaller one: no product can overflow.
+    if tau.size and float(tau.max()) <= limit:
+        return kappa * tau
     most = min(limit + 1.0, float(np.finfo(tau.dtype).max))  # float32 ends at 3e38
     return np.minimum(kappa * np.minimum(tau, most), -np.expm1(-tau))
 

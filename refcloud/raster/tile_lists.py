@@ -96,7 +96,7 @@ class Ranges:
         return across * np.maximum(self.bottom - self.top, 0)
 
 
-def ranges_of(discs: Discs, width: int, height: int) -> Ranges:
+def ranges_of(discs: Discs, width: int, height: int, edge: int = SIDE) -> Ranges:
     """Give the tiles that hold pixels of each ball's bounding square, as `patch` does.
 
     Parameters
@@ -105,6 +105,8 @@ def ranges_of(discs: Discs, width: int, height: int) -> Ranges:
         The balls.
     width, height
         Size of the picture, pixels.
+    edge
+        Pixels along a tile's edge.
 
     Returns
     -------
@@ -118,7 +120,7 @@ def ranges_of(discs: Discs, width: int, height: int) -> Ranges:
         first = np.ceil(low - 0.5).astype(np.intp)
         stop = np.floor(high - 0.5).astype(np.intp) + 1
         empty = stop <= first
-        ends += [first // SIDE, np.where(empty, 0, (stop + SIDE - 1) // SIDE)]
+        ends += [first // edge, np.where(empty, 0, (stop + edge - 1) // edge)]
     return Ranges(*ends)
 
 
@@ -156,7 +158,11 @@ def parts(discs: Discs, width: int, height: int) -> Iterator[TileLists]:
 
 
 def tile_lists(
-    discs: Discs, ranges: Ranges, counts: Whole, box: tuple[int, int, int, int]
+    discs: Discs,
+    ranges: Ranges,
+    counts: Whole,
+    box: tuple[int, int, int, int],
+    edge: int = SIDE,
 ) -> TileLists:
     """List the pairs of tile and ball of a box of tiles.
 
@@ -168,6 +174,8 @@ def tile_lists(
         Their tiles within the box, and how many each has.
     box
         First and one past the last column, and row, of the tiles.
+    edge
+        Pixels along a tile's edge.
 
     Returns
     -------
@@ -185,8 +193,8 @@ def tile_lists(
     square = np.zeros(len(ball))
     for place, tile in ((discs.x, column), (discs.y, row)):
         at = place[ball]
-        low = tile * float(SIDE) + 0.5
-        gap = np.clip(at, low, low + (SIDE - 1.0)) - at
+        low = tile * float(edge) + 0.5
+        gap = np.clip(at, low, low + (edge - 1.0)) - at
         gap /= discs.radius[ball]
         square += np.square(gap, out=gap)
     kept = square < 1.0 + ROOM

@@ -12,7 +12,7 @@ from small_scenes import DARK, EXTENDED, MEDIUM, SUNS
 from twins.lighting import media, scattered_balls, seeds
 
 from refcloud.lighting import coarser, sunward
-from refcloud.lighting.coarser import LEAST_SIDE, PER_RISE, sized_share
+from refcloud.lighting.coarser import LEAST_SIDE, PER_RISE, may_shrink, sized_share
 from refcloud.lighting.lightview import light_view
 from refcloud.lighting.share import light_share
 from refcloud.noise import uniform
@@ -29,7 +29,9 @@ def both(balls, direction, medium, look, most):
     """Carry a light in the buffer that the error allows, and exactly in its own."""
     view = light_view(balls, direction, look.buffer)
     how = view, medium, look, look.forward
-    return sized_share(*how, most, unseen), light_share(*how, 0.0, unseen)[0]
+    return sized_share(*how, most, may_shrink(*how[:3], most), unseen), light_share(
+        *how, 0.0, unseen
+    )[0]
 
 
 @settings(max_examples=60)
