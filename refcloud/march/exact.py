@@ -32,6 +32,8 @@ POINTS, WEIGHTS = gauss(4)
 THICKEST = 0.5
 # Optical depth behind which nothing shows: exp(-41) is below a last bit of white.
 DEEPEST = 41.0
+# Columns of density from places (M, 3) on, in one direction (3,), shape (M,).
+ColumnsTo = Callable[[Array, Array], Array]
 HALVINGS = 50  # of a piece, to find where an optical depth is reached
 
 
@@ -67,6 +69,7 @@ def exact(
     mixing: Mixing,
     least: float = 0.0,
     points: int = 4,
+    columns_to: ColumnsTo | None = None,
 ) -> tuple[Array, Array]:
     """Integrate rays, unchecked.
 
@@ -84,6 +87,8 @@ def exact(
         Transmittance behind which nothing need be looked for.
     points
         Of a piece at which light is looked for: 4, or fewer where that does.
+    columns_to
+        As `scattered`; None integrates every one of them exactly.
 
     Returns
     -------
@@ -104,6 +109,7 @@ def exact(
             mixing,
             least,
             points,
+            columns_to,
         )
     return radiance, column
 
@@ -118,6 +124,7 @@ def _some(
     mixing: Mixing,
     least: float,
     points: int,
+    columns_to: ColumnsTo | None,
 ) -> tuple[Array, Array]:
     count = len(origins)
     sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
@@ -150,7 +157,7 @@ def _some(
     found = scattered(
         Points(pieces.ray, near, amount, places),
         count,
-        lambda points, toward: columns(grid, points, toward),
+        columns_to or (lambda places, toward: columns(grid, places, toward)),
         suns,
         lit,
         medium,
@@ -162,7 +169,7 @@ def _some(
 def scattered(
     points: Points,
     count: int,
-    columns_to: Callable[[Array, Array], Array],
+    columns_to: ColumnsTo,
     suns: tuple[Sun, ...],
     lit: Array,
     medium: Medium,
