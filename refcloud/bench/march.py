@@ -101,13 +101,17 @@ def steps_with_volume(of: Scene, volume: LightVolume, steps: int) -> Array:
 
 
 def sliced(
-    of: Scene, side: int | None, scale: Any, kept: list[LightVolume] | None = None
+    of: Scene,
+    side: int | None,
+    scale: Any,
+    kept: list[LightVolume] | None = None,
+    unbiased: bool = False,
 ) -> Array:
     """March the whole frame by slices, with a light volume that is kept or made."""
     toward = of.sun.direction
     depths = kept or [sun_depths(of.grid, toward, scale=scale, dtype="float32")]
     how: dict[str, Any] = {"suns": (of.sun,), "medium": of.medium, "side": side}
-    picture = march_slices(of.grid, of.camera, depths=depths, **how)
+    picture = march_slices(of.grid, of.camera, depths=depths, unbiased=unbiased, **how)
     assert picture is not None
     return of.compared(picture[0])
 
@@ -174,14 +178,22 @@ def behind(size: int) -> list[Contender]:
     """List ways to see a coarse cloud with the sun behind it: a quarter per voxel."""
     of = scene(size // 2, SIGMA_T, True)
     found = []
-    for scale, side in ((1, None), (1, 160), (2, 128), (2, 192)):
+    for scale, side, unbiased in (
+        (1, None, False),
+        (1, 160, False),
+        (1, 144, True),
+        (2, 128, False),
+        (2, 192, False),
+        (2, 192, True),
+    ):
         label = f"side {side}" if side else "1.25 per voxel"
+        kind = ", unbiased" if unbiased else ""
         found.append(
             Contender(
                 "frame, sun behind",
-                f"slices, {label}, light at {scale}x",
+                f"slices, {label}, light at {scale}x{kind}",
                 FRAME,
-                functools.partial(sliced, of, side, scale),
+                functools.partial(sliced, of, side, scale, None, unbiased),
                 lambda: of.exact,
                 distance=relative_error,
             )

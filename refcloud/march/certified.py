@@ -4,7 +4,8 @@ No bound that is known beforehand tells how far slabs and a light volume are fro
 integral, so the march measures it: some hundred rays, chosen by a hash, are integrated
 exactly, and each setting in turn, from the coarsest on, is tried on them. The first
 whose largest error, with a margin, stays below the tolerance marches all rays. Where
-none does, all rays are integrated exactly.
+none does, rays are integrated by the quadrature, whose light comes from a lattice that
+leans with the sun's rays if that passes, and is exact if it does not.
 
 A sample can miss the worst ray. That is why a margin stands on the largest error seen;
 the risk that is left is small and is hunted by a test with generated scenes.
@@ -15,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.march.cells import lattice
 from refcloud.march.fast import (
@@ -27,14 +29,12 @@ from refcloud.march.gather import Counts
 from refcloud.march.lines import frame_numbers
 from refcloud.march.mixing import PHYSICAL
 from refcloud.march.sampling import CHECKED, chosen_rays, edge_rays
+from refcloud.march.shafted import SHAFTINGS, Shafting, shafted, shafts_of
 from refcloud.march.sliced import SLICINGS, Slicing, sliced
 from refcloud.march.task import Task
 from refcloud.march.volumes import Volumes, volumes_of
 
-# Gauss points of a piece on checked rays: two are off by less than a hundredth of the
-# least tolerance that slabs can meet.
-CHECKED_POINTS = 2
-COARSE = 1e-3  # tolerances at which two points serve for all rays too
+FEWER = (2, 3)  # Gauss points of a piece, that may do where light is exact
 # On the largest error of the sample: what other rays may have beyond it.
 MARGIN = 2.0
 # The steepest rays of slices are their worst ones, so less is left beyond them.
@@ -92,7 +92,7 @@ def _marched(
     # 1. The sample, exactly.
     some = task.taken(sample)
     least = HIDDEN * tolerance / task.brightest
-    expected = some.exact(0.1 * least, CHECKED_POINTS)
+    expected = some.exact(0.1 * least)
     watch("checked rays", sample)
 
     # 2. Slices, which march all rays of a camera or none.
@@ -162,10 +162,7 @@ def _marched(
     # 4. All rays, with the one that passed.
     setting, error = next(reversed(errors.items()))
     if MARGIN * error > tolerance:
-        points = CHECKED_POINTS if tolerance >= COARSE else 4
-        radiance, column = task.exact(least, points)
-        note = f"march: exact, since slabs were off by {error:.2g} on the checked rays"
-        return radiance, column, (), (note,)
+        return _by_quadrature(task, some, expected, tolerance, watch, inner)
     counts = Counts()
     radiance, column = march(task, frames, setting, counts)
     rows = (
@@ -184,6 +181,46 @@ def _marched(
         f" per cell; off by {error:.2g} at most on {len(sample)} checked rays"
     )
     return radiance, column, rows, (note,)
+
+
+def _by_quadrature(
+    task: Task,
+    some: Task,
+    expected: tuple[Array, Array],
+    tolerance: float,
+    watch: Observer,
+    inner: VoxelGrid,
+) -> tuple[Array, Array, tuple[Skipped, ...], tuple[str, ...]]:
+    """March where no slabs serve: exact toward the eye, with what light allows."""
+    count, least = len(task.origins), HIDDEN * tolerance / task.brightest
+    # 1. Light from leaning lattices.
+    tried: dict[Shafting, float] = {}
+    tables, finer = None, 0
+    for way in SHAFTINGS:
+        if way.finer != finer:
+            tables, finer = shafts_of(task, inner, way.finer), way.finer
+        if tables is None:
+            break
+        tried[way] = some.error(shafted(some, tables, way.points, least), expected)
+        if MARGIN * tried[way] <= tolerance:
+            watch("errors of shafts", tried)
+            bound = MARGIN * tried[way]
+            row = Skipped("march", "exact columns to the suns", count, count, bound)
+            note = (
+                f"march: quadrature, {way.finer} samples of light per cell along the"
+                f" suns' rays, {way.points} Gauss points; off by {tried[way]:.2g} at"
+                f" most on {len(some.origins)} checked rays"
+            )
+            return *shafted(task, tables, way.points, least), (row,), (note,)
+    watch("errors of shafts", tried)
+    # 2. Exact light, at as few points of a piece as do.
+    points = 4
+    for fewer in FEWER:
+        if MARGIN * some.error(some.exact(least, fewer), expected) <= tolerance:
+            points = fewer
+            break
+    note = f"march: exact light at {points} Gauss points, since no saving held"
+    return *task.exact(least, points), (), (note,)
 
 
 def by_slices(
@@ -209,6 +246,4 @@ def edge_error(task: Task, found: tuple[Array, Array], least: float) -> float:
     thickest = float(np.max(task.medium.sigma_t))
     edges = edge_rays(task.camera, -np.expm1(-thickest * found[1]))
     some = task.taken(edges)
-    return some.error(
-        (found[0][edges], found[1][edges]), some.exact(least, CHECKED_POINTS)
-    )
+    return some.error((found[0][edges], found[1][edges]), some.exact(least))

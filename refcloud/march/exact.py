@@ -31,6 +31,8 @@ from refcloud.optics import Medium, Sun
 STEEPEST = 1.0
 # Optical depth behind which nothing shows: exp(-41) is below a last bit of white.
 DEEPEST = 41.0
+# Columns of density from places (M, 3) on, in one direction (3,), shape (M,).
+ColumnsTo = Callable[[Array, Array], Array]
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ def exact(
     mixing: Mixing,
     least: float = 0.0,
     points: int = 4,
+    columns_to: ColumnsTo | None = None,
 ) -> tuple[Array, Array]:
     """Integrate rays, unchecked.
 
@@ -88,6 +91,8 @@ def exact(
         Transmittance behind which nothing need be looked for.
     points
         Of a piece at which light is looked for: 4, or fewer where that does.
+    columns_to
+        As `scattered`; None integrates every one of them exactly.
 
     Returns
     -------
@@ -108,6 +113,7 @@ def exact(
             mixing,
             least,
             points,
+            columns_to,
         )
     return radiance, column
 
@@ -122,6 +128,7 @@ def _some(
     mixing: Mixing,
     least: float,
     points: int,
+    columns_to: ColumnsTo | None,
 ) -> tuple[Array, Array]:
     count = len(origins)
     sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
@@ -148,25 +155,26 @@ def _some(
     # changes much along a piece, as beside a grazed face, the piece is cut further.
     rule = gauss(points)
     found = np.zeros((count, 3))
+    to_sun = columns_to or (lambda places, toward: columns(grid, places, toward))
     placed = points_of(pieces, before, origins, directions, rule)
     for sun, source in zip(suns, lit, strict=True):
         if not source.any():
             continue
-        far = far_of(grid, placed, sun)
+        far = far_of(placed, sun, to_sun)
         parts = parts_needed(sunward * far, np.ptp(rule[0]))
         gentle, steep = np.flatnonzero(parts == 1), np.flatnonzero(parts > 1)
         add(found, placed.taken(gentle), far[gentle], source, medium, mixing)
         if len(steep):
             finer = evenly(taken(pieces, steep), before[steep], parts[steep])
             more = points_of(*finer, origins, directions, rule)
-            add(found, more, far_of(grid, more, sun), source, medium, mixing)
+            add(found, more, far_of(more, sun, to_sun), source, medium, mixing)
     return found, column
 
 
-def far_of(grid: Lattice, points: Points, sun: Sun) -> Array:
+def far_of(points: Points, sun: Sun, columns_to: ColumnsTo) -> Array:
     """Give columns of density from points to a sun, shape (P, K)."""
-    places = points.places.reshape(-1, 3)
-    return columns(grid, places, sun.direction).reshape(points.near.shape)
+    far = columns_to(points.places.reshape(-1, 3), sun.direction)
+    return far.reshape(points.near.shape)
 
 
 def parts_needed(tau: Array, share: float) -> Numbers:
@@ -214,7 +222,7 @@ def points_of(
 def scattered(
     points: Points,
     count: int,
-    columns_to: Callable[[Array, Array], Array],
+    columns_to: ColumnsTo,
     suns: tuple[Sun, ...],
     lit: Array,
     medium: Medium,
@@ -240,8 +248,7 @@ def scattered(
     radiance = np.zeros((count, 3))
     for sun, source in zip(suns, lit, strict=True):
         if source.any():
-            far = columns_to(points.places.reshape(-1, 3), sun.direction)
-            far = far.reshape(points.near.shape)
+            far = far_of(points, sun, columns_to)
             add(radiance, points, far, source, medium, mixing)
     return radiance
 

@@ -47,6 +47,7 @@ def march_slices(
     side: int | None = None,
     finer: float = FINER,
     depths: Sequence[LightVolume] | None = None,
+    unbiased: bool = False,
 ) -> tuple[Array, Array] | None:
     """Integrate light that is scattered once along the rays of a camera, unchecked.
 
@@ -68,6 +69,9 @@ def march_slices(
         Samples per voxel where the cloud is nearest.
     depths
         A light volume for each sun, all of one scale; None makes them.
+    unbiased
+        Whether the light of a slice is corrected by what its linear interpolation adds
+        on average; see `without_bias`.
 
     Returns
     -------
@@ -83,7 +87,7 @@ def march_slices(
     if depths is None:
         depths = [sun_depths(grid, sun.direction, dtype="float32") for sun in suns]
     colours = np.unique(medium.sigma_t_rgb)
-    light, hidden = crossed(view, grid, depths, colours)
+    light, hidden = crossed(view, grid, depths, colours, unbiased)
     channel = np.searchsorted(colours, medium.sigma_t_rgb)
     return developed(camera, view, light, hidden, suns, medium, channel)
 
@@ -98,7 +102,11 @@ def single(grid: VoxelGrid, medium: Medium) -> bool:
 
 
 def crossed(
-    view: View, grid: VoxelGrid, depths: Sequence[LightVolume], sigma: Array
+    view: View,
+    grid: VoxelGrid,
+    depths: Sequence[LightVolume],
+    sigma: Array,
+    unbiased: bool = False,
 ) -> tuple[Image, Image]:
     """March the image's samples through all slices, front to back.
 
@@ -110,6 +118,8 @@ def crossed(
         The cloud map, and a light volume for each of S suns.
     sigma
         The C different extinctions, shape (C,).
+    unbiased
+        As `march_slices`.
 
     Returns
     -------
@@ -144,11 +154,30 @@ def crossed(
             left = 1.0 - alpha
             before = through[c][window]
             for n, depth in enumerate(suns):
-                sent = resampled(np.exp(depth * np.float32(-sigma_t)), *places)
+                lit = np.exp(depth * np.float32(-sigma_t))
+                sent = resampled(without_bias(lit) if unbiased else lit, *places)
                 sent *= alpha
                 light[n, c][window] += before * behind_each_other(sent, left)
             before *= left.prod(axis=0)
     return light, 1.0 - through
+
+
+def without_bias(lit: Image) -> Image:
+    """Take from each sample a twelfth of its second differences along v and along u.
+
+    Linear interpolation of f is off by x (1 - x) f'' / 2 at a share x between samples,
+    on average f'' / 12: light that curves upward comes out too bright. What is left has
+    a mean of 0. No light is made negative, or more than the sun's.
+    """
+    better = lit.copy()
+    for axis in (1, 2):
+        first, middle, last = ([slice(None)] * 3 for _ in range(3))
+        first[axis], middle[axis], last[axis] = slice(-2), slice(1, -1), slice(2, None)
+        second = lit[tuple(first)] + lit[tuple(last)]
+        second -= 2.0 * lit[tuple(middle)]
+        second *= np.float32(1.0 / 12.0)
+        better[tuple(middle)] -= second
+    return np.clip(better, 0.0, 1.0, out=better)
 
 
 def behind_each_other(sent: Image, left: Image) -> Image:

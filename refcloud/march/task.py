@@ -11,7 +11,7 @@ from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array
 from refcloud.march.cells import Lattice
-from refcloud.march.exact import exact
+from refcloud.march.exact import ColumnsTo, exact
 from refcloud.march.mixing import Mixing
 from refcloud.optics import Medium, Sun
 from refcloud.transport import LightVolume
@@ -91,7 +91,12 @@ class Task:
             worst = max(worst, float(np.abs(a[1] - b[1]).max(initial=0.0)))
         return worst
 
-    def exact(self, least: float = 0.0, points: int = 4) -> tuple[Array, Array]:
+    def exact(
+        self,
+        least: float = 0.0,
+        points: int = 4,
+        columns_to: ColumnsTo | None = None,
+    ) -> tuple[Array, Array]:
         """Integrate the rays; see `refcloud.march.exact`."""
         return exact(
             self.grid,
@@ -103,6 +108,7 @@ class Task:
             self.mixing,
             least,
             points,
+            columns_to,
         )
 
 
