@@ -16,7 +16,7 @@ import numpy as np
 from refcloud.conventions import Array
 from refcloud.march.cells import Lattice, Numbers, Pieces, cut, density_at, most_rays
 from refcloud.march.mixing import Mixing
-from refcloud.march.pieces import POINTS, WEIGHTS, evenly, taken, thinner
+from refcloud.march.pieces import POINTS, SLACK, WEIGHTS, evenly, taken, thinner
 from refcloud.march.quadrature import (
     before_each,
     columns,
@@ -196,7 +196,7 @@ def parts_needed(tau: Array, share: float) -> Numbers:
     change = np.minimum(
         tau.max(axis=1, initial=0.0) - low, np.maximum(DEEPEST - low, 0.0)
     )
-    return np.maximum(np.ceil(change / (share * STEEPEST)), 1.0).astype(np.intp)
+    return np.maximum(np.ceil(change / (share * STEEPEST) - SLACK), 1.0).astype(np.intp)
 
 
 def points_of(

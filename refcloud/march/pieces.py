@@ -12,6 +12,8 @@ POINTS, WEIGHTS = gauss(4)
 # Optical depth of a piece: four points integrate exp(-2 tau) over it, which is light
 # that comes and goes the same way, to 3e-10.
 THICKEST = 0.5
+# A last bit does not decide how often a piece of a round depth is cut.
+SLACK = 1e-9
 HALVINGS = 50  # of a piece, to find where an optical depth is reached
 
 
@@ -51,7 +53,7 @@ def thinner(
     if not (tau > THICKEST).any():
         return pieces, before
     # 1. Into how many, and how many of those may show.
-    parts = np.ceil(np.maximum(tau / THICKEST, 1.0))
+    parts = np.ceil(np.maximum(tau / THICKEST - SLACK, 1.0))
     left = (deepest - rate * before) * parts / np.maximum(tau, THICKEST)
     shown = np.maximum(np.minimum(parts, np.ceil(left)), 1.0).astype(np.intp)
     parent = np.repeat(np.arange(len(tau)), shown)

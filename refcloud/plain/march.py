@@ -14,6 +14,7 @@ from refcloud.plain.cloudmap import Grid, cell_size, trilinear
 from refcloud.plain.optics import phase
 
 Colour = Sequence[float]  # red, green, blue
+SLACK = 1e-9  # a last bit does not decide how often a piece of a round depth is cut
 
 
 class Cloud(NamedTuple):
@@ -205,7 +206,7 @@ def parts(
 ) -> list[float]:
     """Cut a piece where its optical depth passes equal shares of at most 1/2."""
     whole = stretch(cloud, origin, direction, a, b)
-    count = max(math.ceil(sigma_t * whole / 0.5), 1)
+    count = max(math.ceil(sigma_t * whole / 0.5 - SLACK), 1)
     ends = [a]
     for k in range(1, count):
         low, high = a, b
@@ -229,6 +230,33 @@ def gauss4() -> list[tuple[float, float]]:
     return found
 
 
+def lit_points(
+    cloud: Cloud,
+    origin: Point,
+    direction: Point,
+    a: float,
+    b: float,
+    sun: Sun,
+    rate: float,
+) -> list[tuple[Point, float, float]]:
+    """Place Gauss points on a piece, in more parts where a sun's depth changes much."""
+    rule = gauss4()
+    tau = [
+        rate * column(cloud, along(origin, (a + x * (b - a), direction)), sun.direction)
+        for x, _ in rule
+    ]
+    change = min(max(tau) - min(tau), max(41.0 - min(tau), 0.0))
+    between_outermost = max(x for x, _ in rule) - min(x for x, _ in rule)
+    count = max(math.ceil(change / between_outermost - SLACK), 1)
+    found = []
+    for part in range(count):
+        for x, weight in rule:
+            at = a + (part + x) / count * (b - a)
+            point = along(origin, (at, direction))
+            found.append((point, at, weight * (b - a) / count))
+    return found
+
+
 def integrate(
     cloud: Cloud,
     origin: Point,
@@ -249,46 +277,20 @@ def integrate(
         thickest = k * max(medium.sigma_t)
         ends = parts(cloud, origin, direction, start, end, thickest)
         for a, b in following(ends):
-            for x, weight in gauss4():
-                at = a + x * (b - a)
-                near = passed + stretch(cloud, origin, direction, a, at)
-                point = along(origin, (at, direction))
-                amount = cloud.at(point) * weight * (b - a)
-                for sun in suns:
-                    far = column(cloud, point, sun.direction)
-                    light = sources(sun, medium, direction)
+            for sun in suns:
+                light = sources(sun, medium, direction)
+                rate = mixing.light_absorption_toward_sun * max(medium.sigma_t)
+                for p, x, weight in lit_points(
+                    cloud, origin, direction, a, b, sun, rate
+                ):
+                    near = passed + stretch(cloud, origin, direction, a, x)
+                    far = column(cloud, p, sun.direction)
                     for c, sigma_t in enumerate(medium.sigma_t):
                         seen = math.exp(-k * sigma_t * near)
                         lit = light[c] * reaching(sigma_t * far, mixing)
-                        L[c] += sigma_t * amount * seen * lit
+                        L[c] += sigma_t * cloud.at(p) * weight * seen * lit
             passed += stretch(cloud, origin, direction, a, b)
     T = [math.exp(-k * sigma_t * passed) for sigma_t in medium.sigma_t]
     for c in range(3):
         L[c] += medium.albedo[c] * ambient[c] * (1.0 - T[c]) + T[c] * background[c]
     return L, T
-
-
-def ball_columns(
-    balls: Sequence[tuple[Point, float, float]], origin: Point, direction: Point
-) -> float:
-    """Integrate the density of Wyvill balls (centre, radius, density) along one ray.
-
-    The kernel on the chord is p^2 (5 + 4 p) / 9, p = 1 - b^2 / R^2 - u^2.
-    """
-    direction = unit(direction)
-    total = 0.0
-    for center, R, density in balls:
-        offset = between(center, origin)
-        u = dot(offset, direction)
-        foot = along(offset, (-u, direction))
-        p = 1.0 - dot(foot, foot) / R**2
-        if p <= 0.0:
-            continue
-        s = math.sqrt(p)
-        ends = []
-        for x in (min(max(u / R, -s), s), s):
-            fifth = p**2 * x - 2.0 / 3.0 * p * x**3 + x**5 / 5.0
-            seventh = p**3 * x - p**2 * x**3 + 3.0 / 5.0 * p * x**5 - x**7 / 7.0
-            ends.append((5.0 * fifth + 4.0 * seventh) / 9.0)
-        total += density * R * (ends[1] - ends[0])
-    return total

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 import refcloud.march as array
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
+from refcloud.plain import chords
 from refcloud.plain import march as plain
 from twins import Draw, twin
 from twins.cloudmap import grids, places
@@ -189,7 +190,7 @@ def integrate(draw: Draw):
 
 @twin(
     array.ball_columns,
-    plain.ball_columns,
+    chords.ball_columns,
     tolerance=1e-13,
     why="worst seen 4e-16 in 600 examples; Gaussian balls are held against their field",
 )
@@ -200,4 +201,4 @@ def ball_columns(draw: Draw):
     centers = np.reshape([ball[0] for ball in balls], (-1, 3))
     metaballs = Metaballs(centers, [b[1] for b in balls], [b[2] for b in balls])
     actual = array.ball_columns(metaballs, [origin], [way])
-    return actual, [plain.ball_columns(balls, origin, way)]
+    return actual, [chords.ball_columns(balls, origin, way)]
