@@ -11,8 +11,9 @@ import numpy as np
 
 from refcloud import noise
 from refcloud.checking import checked
-from refcloud.conventions import Array, Range, Seed
+from refcloud.conventions import MOST_PIXELS, Array, Range, Seed
 from refcloud.image import Picture, srgb_decode
+from refcloud.refusal import complaint
 
 Kind = Literal[
     "value",
@@ -90,8 +91,19 @@ def noise_picture(
     if view == "channels":
         scales = [_slice(kind, along * 2.0**i, octaves, seed) for i in range(CHANNELS)]
         return _shown([[np.stack(scales, axis=-1), *scales]])
+    _refuse_wide(size, octaves)
     alone, sums = _octaves(kind, along, octaves, seed)
     return _shown([alone, sums])
+
+
+def _refuse_wide(size: int, octaves: int) -> None:
+    """Refuse too many panels for one picture before any is drawn."""
+    width, height = octaves * (size + GAP), 2 * (size + GAP)
+    if width * height > MOST_PIXELS:
+        expected = f"octaves side by side in {MOST_PIXELS / 1e6:.0f} megapixels"
+        got = f"{octaves} of {size} x {size}"
+        advice = "choose a smaller size or fewer octaves"
+        raise ValueError(complaint("size", expected, got, advice))
 
 
 def _shown(rows: list[list[Array]]) -> Picture:

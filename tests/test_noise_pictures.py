@@ -7,6 +7,7 @@ import typing
 import numpy as np
 import pytest
 
+from refcloud import noise_pictures
 from refcloud.image import srgb_encode
 from refcloud.noise import (
     cloud_sheet,
@@ -78,3 +79,11 @@ def test_the_sums_are_those_of_the_room() -> None:
     shown = values(noise_picture("sheet", size=64, seed=3))
     np.testing.assert_allclose(shown, sheet / 255.0, rtol=0, atol=1e-7)
     assert sheet_map(seed=3).shape == (32, 32)
+
+
+def test_too_many_panels_are_refused_before_they_are_drawn(monkeypatch) -> None:
+    drawn: list[int] = []
+    monkeypatch.setattr(noise_pictures, "_octaves", lambda *_: drawn.append(1))
+    with pytest.raises(ValueError, match=r"^size: expected [^\n]* fewer octaves$"):
+        noise_picture("value", view="octaves", size=2048, octaves=8)
+    assert not drawn
