@@ -103,17 +103,18 @@ def _marched(
         if found is None:
             break
         tried[slicing] = some.error((found[0][sample], found[1][sample]), expected)
-        if (
-            MARGIN * tried[slicing] <= tolerance
-            and edge_error(task, found, 0.1 * least) <= tolerance / EDGE_MARGIN
-        ):
+        if MARGIN * tried[slicing] > tolerance:
+            continue
+        steepest = edge_error(task, found, 0.1 * least)
+        bound = max(MARGIN * tried[slicing], EDGE_MARGIN * steepest)
+        if bound <= tolerance:
             watch("errors of slices", tried)
             row = Skipped(
                 "march",
                 "exact rays",
                 len(found[1]),
                 len(found[1]),
-                MARGIN * tried[slicing],
+                bound,
             )
             note = (
                 f"march: slices, {slicing.finer:g} samples of the image and"

@@ -8,6 +8,7 @@ from smooth_clouds import cloud
 
 from refcloud import render
 from refcloud.camera import Camera
+from refcloud.march.sampling import edge_rays
 from refcloud.optics import Medium, Sun
 
 CAMERA = Camera([1.5, 1.0, 3.2], [0, 0, 0], fov_y=0.53, width=32, height=24)
@@ -37,3 +38,15 @@ def test_what_slices_do_not_hold_is_marched_by_rays() -> None:
     assert not any("slices" in note for note in picture.notes)
     exact = render(full, medium=Medium(6.0), **HOW)
     assert np.abs(picture.linear - exact.linear).max() < 0.03
+
+
+def test_the_steepest_rays_are_those_beside_a_step() -> None:
+    camera = Camera([0, 0, 5], [0, 0, 0], width=9, height=5)
+    opacity = np.zeros((5, 9))
+    opacity[2, 4:] = 1.0
+    found = {divmod(int(k), 9) for k in edge_rays(camera, opacity.reshape(-1))}
+    beside = {(2, c) for c in range(3, 9)} | {
+        (r, c) for r in (1, 3) for c in range(4, 9)
+    }
+    assert found == beside
+    assert not len(edge_rays(camera, np.zeros(45))), "no step, no edge"
