@@ -129,7 +129,7 @@ def _design(grid: VoxelGrid, count: int) -> tuple[Array, Array, Any, Array]:
     """Cluster by scikit-learn, and give centres, radii, design matrix and target."""
     work = prepare(grid)
     assert work is not None  # these clouds are not empty
-    points = work.positions()
+    points = work.positions
     cluster = importlib.import_module("sklearn.cluster")
     means = cluster.KMeans(count, n_init=1, random_state=SEED).fit(points)
     centers = means.cluster_centers_.astype(float)

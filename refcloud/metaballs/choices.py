@@ -57,7 +57,8 @@ def spread_start(points: Array, weights: Array, count: int, seed: int) -> Labels
     share = max(DRAWN_FROM * count, LEAST_DRAWN) / max(len(points), 1)
     few = np.flatnonzero(uniform(START, np.arange(len(points)), seed=seed) < share)
     points, weights = points[few], weights[few]
-    chosen = new = _drawn(weights, 0, 1, seed)
+    draws = uniform(SPREAD, np.arange(min(count, len(points))), seed=seed)
+    chosen = new = _drawn(weights, draws[:1])
     # |x - c|^2 as a product of the rows [-2c, |c|^2, 1] with the columns [x, 1, |x|^2].
     own = np.einsum("ij,ij->i", points, points)
     columns = np.stack([*points.T, np.ones_like(own), own])
@@ -73,17 +74,16 @@ def spread_start(points: Array, weights: Array, count: int, seed: int) -> Labels
         squares[squares < SAME] = 0.0
         squares[new] = 0.0
         size = min(count - len(chosen), max(1, len(chosen) // BATCH))
-        new = _drawn(weights * squares, len(chosen), size, seed)
+        new = _drawn(weights * squares, draws[len(chosen) :][:size])
         chosen = np.concatenate([chosen, new])
     return few[chosen]
 
 
-def _drawn(mass: Array, word: int, size: int, seed: int) -> Labels:
+def _drawn(mass: Array, draws: Array) -> Labels:
     """Draw one point from each of equal shares of the mass, so that they spread."""
     cumulative = np.cumsum(mass)
     if not len(mass) or cumulative[-1] <= 0.0:
         return np.zeros(0, dtype=np.intp)
-    draws = uniform(SPREAD, word, np.arange(size), seed=seed)
-    targets = (np.arange(size) + draws) / size * cumulative[-1]
+    targets = (np.arange(len(draws)) + draws) / len(draws) * cumulative[-1]
     drawn = np.unique(np.searchsorted(cumulative, targets, "right"))
     return drawn[drawn < len(mass)]  # rounding may end beyond the last

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from refcloud.conventions import Array
-from refcloud.metaballs.coarse import levels, moved
+from refcloud.metaballs.coarse import levels, moved, serves_coarser
 from refcloud.metaballs.kmeans import Clusters, adaptive_kmeans, lloyd
 from refcloud.metaballs.pairs import Work
 from refcloud.metaballs.refine import Fit, Listed, listed, refine
@@ -27,7 +27,7 @@ COARSE_STEPS, LAST_STEPS, ALL_STEPS = 8, 1, 5
 
 def man(work: Work, count: int, settings: Settings) -> Listed:
     """Run the paper's three phases, eq 14 to 24."""
-    clusters = adaptive_kmeans(work.positions(), count, seed=settings.seed)
+    clusters = adaptive_kmeans(work.positions, count, seed=settings.seed)
     settings.watch("clusters", work, clusters)
     fit = spread(work, clusters, settings.overlap or PAPER_OVERLAP, None, 0.0)
     state = with_learned_heights(work, fit, settings.kernel)
@@ -57,9 +57,9 @@ def grids_for(work: Work, count: int) -> list[Work]:
 
 def clustered(work: Work, count: int, settings: Settings, *, refined: bool) -> Fit:
     """Run phases 1 and 2, dense voxels first."""
-    points = work.positions()
+    points = work.positions
     mass = work.density[work.density > 0.0]
-    small = len(grids_for(work, count)) == 1
+    small = not serves_coarser(work, typical_radius(work, count))
     rim = settings.rim
     if rim is None:
         rim = RIM if refined and small else 0.0
@@ -77,7 +77,7 @@ def spread(
     # A box of edges e has the mean square distance |e|^2 / 12.
     spacing = float(np.sqrt((work.edges**2).mean()))
     sigma = rms_radii(
-        work.positions(),
+        work.positions,
         clusters.assignment,
         centers=clusters.centers,
         spacing=spacing,

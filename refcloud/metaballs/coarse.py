@@ -37,11 +37,15 @@ def coarsened(work: Work) -> Work:
 def levels(work: Work, radius: float) -> list[Work]:
     """List the grids that serve balls of a mean radius, the coarsest first."""
     found = [work]
-    while radius >= LEAST_CELLS * 2.0 * float(found[0].edges.max()):
-        if max(found[0].density.shape) < 2:
-            break
+    while serves_coarser(found[0], radius):
         found.insert(0, coarsened(found[0]))
     return found
+
+
+def serves_coarser(work: Work, radius: float) -> bool:
+    """Say whether balls of a mean radius need no more than cells of twice the edge."""
+    enough = radius >= LEAST_CELLS * 2.0 * float(work.edges.max())
+    return enough and max(work.density.shape) >= 2
 
 
 def moved(fit: Fit, work: Work, other: Work) -> Fit:

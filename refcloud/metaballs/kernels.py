@@ -190,7 +190,12 @@ def profile_of(q: Array, kernel: Kernel) -> Array:
     """Evaluate `profile` without checking q."""
     if kernel == "wyvill":
         p = np.maximum(1.0 - q, 0.0)
-        return p * p * (5.0 + 4.0 * p) / 9.0
+        rest = 4.0 * p
+        rest += 5.0  # in place: the lists of the fit have many entries
+        p *= p
+        p *= rest
+        p /= 9.0
+        return p
     return np.where(q < 1.0, np.exp(-(CUT**2) * np.minimum(q, 1.0)), 0.0)
 
 

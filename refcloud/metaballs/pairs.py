@@ -9,6 +9,7 @@ counting them is what keeps the balls from bleeding.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -24,14 +25,12 @@ Numbers = NDArray[np.integer]
 
 # Edges that differ by less count as equal: an offset of 1e6 edges leaves such rounding.
 EQUAL_EDGES = 1e-6
-# Balls whose radii differ by less than this factor share one stencil of voxels.
-STENCIL_STEP = 1.15
 # Pairs of voxel and ball take about 100 bytes each: 1.6 GB, the most a fit may use.
 MOST_PAIRS = 1 << 24
 # Cells of the box that the balls reach over: 270 MB of float64.
 MOST_CELLS = 1 << 25
-# Entries of a stencil times balls that are listed at a time: 8 MB for each temporary.
-BLOCK = 1 << 20
+# Radii are listed so much wider, that rounding leaves out no voxel; q then decides.
+WIDER = 1.0 + 1e-12
 
 
 @dataclass(frozen=True)
@@ -64,8 +63,9 @@ class Work:
     voxels: int
     joined: int = 1
 
+    @functools.cached_property
     def positions(self) -> Array:
-        """Give the occupied voxels' centres, shape (K, 3) as x, y, z."""
+        """The occupied voxels' centres, shape (K, 3) as x, y, z."""
         z, y, x = np.nonzero(self.density > 0.0)
         return np.stack([x, y, z], axis=1) * self.edges
 
@@ -76,8 +76,8 @@ class Pairs:
 
     Attributes
     ----------
-    voxel, ball
-        Their numbers, shape (P,).
+    voxel
+        Their voxels' numbers, shape (P,).
     away
         Voxel minus centre, shape (3, P).
     q
@@ -95,7 +95,6 @@ class Pairs:
     """
 
     voxel: Numbers
-    ball: Numbers
     away: Array
     q: Array
     value: Array
@@ -106,6 +105,11 @@ class Pairs:
     target: Array
     shape: tuple[int, int, int]
     corner: tuple[int, int, int]
+
+    @property
+    def ball(self) -> Numbers:
+        """The pairs' balls' numbers, shape (P,)."""
+        return np.repeat(self.owners, self.lengths)
 
     def forward(self, heights: Array) -> Array:
         """Sum the balls at each voxel: the design matrix times the heights."""
@@ -155,48 +159,73 @@ def list_pairs(work: Work, centers: Array, radii: Array, kernel: Kernel) -> Pair
     """List all pairs with |voxel - centre| < R, ball after ball."""
     _refuse_too_many(radii)
     low, shape, target = _box(work, centers, radii)
-    base = np.rint(centers / work.edges)  # (N, 3) the voxel nearest to each centre
-    inside = centers - base * work.edges  # at most half an edge
-    corner = _flat(base - low, shape)
-    voxels: list[Numbers] = []
-    members: list[Numbers] = []
-    places: list[Array] = []  # (4, ...): voxel minus centre, and q
-    steps = np.ceil(np.log(radii) / np.log(STENCIL_STEP))
-    for step in np.unique(steps):
-        alike = np.flatnonzero(steps == step)
-        offsets = _stencil(work.edges, float(radii[alike].max()))  # (S, 3)
-        shift = _flat(offsets, shape)
-        reach = (offsets * work.edges).T  # (3, S)
-        rows = max(1, BLOCK // len(offsets))
-        for start in range(0, len(alike), rows):
-            some = alike[start : start + rows]
-            x, y, z = (
-                reach[axis] - inside[some, axis, None] for axis in range(3)
-            )  # (B, S)
-            q = (x * x + y * y + z * z) / (radii[some] ** 2)[:, None]
-            near = q < 1.0
-            flat = np.flatnonzero(near)
-            row = np.repeat(np.arange(len(some)), np.count_nonzero(near, axis=1))
-            column = flat - row * len(offsets)
-            places.append(np.stack([part.ravel()[flat] for part in (x, y, z, q)]))
-            members.append(some[row])
-            voxels.append(corner[some[row]] + shift[column])
-    ball, place = np.concatenate(members), np.concatenate(places, axis=1)
-    starts = np.flatnonzero(np.diff(ball, prepend=-1))
+    voxel, away, every = _voxels_of(work.edges, low, shape, centers, radii)
+    q = np.einsum("ij,ij->j", away, away)
+    q /= np.repeat(radii**2, every)
+    near = q < 1.0
+    if not near.all():  # voxels on the rim, to a rounding
+        ball = np.repeat(np.arange(len(radii)), every)[near]
+        voxel, away, q = voxel[near], away[:, near], q[near]
+        every = np.bincount(ball, minlength=len(radii))
+    owners = np.flatnonzero(every)
+    lengths = every[owners]
     return Pairs(
-        voxel=np.concatenate(voxels),
-        ball=ball,
-        away=place[:3],
-        q=place[3],
-        value=profile_of(place[3], kernel),
-        starts=starts,
-        owners=ball[starts],
-        lengths=np.diff(starts, append=len(ball)),
+        voxel=voxel,
+        away=away,
+        q=q,
+        value=profile_of(q, kernel),
+        starts=np.cumsum(lengths) - lengths,
+        owners=owners,
+        lengths=lengths,
         count=len(radii),
         target=target.ravel(),
         shape=shape,
         corner=(int(-low[2]), int(-low[1]), int(-low[0])),
     )
+
+
+def _voxels_of(
+    edges: Array,
+    low: Array,
+    shape: tuple[int, int, int],
+    centers: Array,
+    radii: Array,
+) -> tuple[Numbers, Array, Numbers]:
+    """List the voxels of balls: their numbers, voxel minus centre, and each ball's.
+
+    A ball is slices, a slice is rows, a row is voxels: each step cuts what it has into
+    the cells of one axis that the rest of R^2 reaches. Cells are longest along the
+    first axis and shortest along the last, so that few slices and rows hold no voxel.
+    """
+    strides = (1, shape[2], shape[1] * shape[2])
+    ball = np.arange(len(radii))
+    flat = np.zeros(len(radii), dtype=np.intp)
+    away = np.zeros((3, len(radii)))
+    counts = np.zeros(0, dtype=np.intp)
+    for turn, axis in enumerate(np.argsort(edges, kind="stable")[::-1]):
+        if turn:
+            ball = np.repeat(ball, counts)
+        # 1. The cells on this axis within sqrt(R^2 - what the axes before have used).
+        middle = centers[ball, axis]
+        used = np.einsum("ij,ij->j", away, away)
+        reach = np.sqrt(np.maximum((WIDER * radii[ball]) ** 2 - used, 0.0))
+        first = np.ceil((middle - reach) / edges[axis])
+        last = np.floor((middle + reach) / edges[axis])
+        counts = np.maximum(last - first + 1.0, 0.0).astype(np.intp)
+        # 2. One entry for each of them, counted from 0.
+        ends = np.cumsum(counts)
+        step = np.arange(counts.sum())
+        step -= np.repeat(ends - counts, counts)
+        # 3. Where it is: its distance, and its number in a flat [z, y, x] array.
+        away = np.repeat(away, counts, axis=1)
+        away[axis] = step
+        away[axis] *= edges[axis]
+        away[axis] += np.repeat(first * edges[axis] - middle, counts)
+        step *= strides[axis]
+        corner = flat + (first - low[axis]).astype(np.intp) * strides[axis]
+        flat = np.repeat(corner, counts)
+        flat += step
+    return flat, away, np.bincount(ball, counts, len(radii)).astype(np.intp)
 
 
 def _refuse_too_many(radii: Array) -> None:
@@ -232,24 +261,3 @@ def _box(
     deep, tall, wide = work.density.shape
     target[z : z + deep, y : y + tall, x : x + wide] = work.density
     return low, target.shape, target
-
-
-def _flat(cells: Array, shape: tuple[int, int, int]) -> Numbers:
-    """Give the numbers of voxels (x, y, z) in a flat ``[z, y, x]`` array."""
-    _, height, width = shape
-    x, y, z = cells.astype(np.intp).T
-    return (z * height + y) * width + x
-
-
-def _stencil(edges: Array, radius: float) -> Array:
-    """List the voxels that a ball may cover whose centre lies in voxel (0, 0, 0)."""
-    most = np.floor(radius / edges + 0.5).astype(int)
-    axes = [np.arange(-m, m + 1.0) for m in most]
-    # Distance to the nearest point of the middle voxel, squared, axis by axis.
-    gaps = [
-        np.maximum(np.abs(axis) - 0.5, 0.0) ** 2 * edge**2
-        for axis, edge in zip(axes, edges, strict=True)
-    ]
-    near = gaps[2][:, None, None] + gaps[1][:, None] + gaps[0] < radius**2
-    z, y, x = np.nonzero(near)
-    return np.stack([axes[0][x], axes[1][y], axes[2][z]], axis=1)

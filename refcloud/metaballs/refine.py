@@ -117,9 +117,8 @@ def _solve(
     gradient = pairs.by_ball(jacobian * residual[pairs.voxel])
     blocks = np.zeros((pairs.count, 5, 5))
     for i in range(5):
-        for j in range(i, 5):
-            blocks[:, i, j] = pairs.by_ball(jacobian[i] * jacobian[j])
-            blocks[:, j, i] = blocks[:, i, j]
+        below = pairs.by_ball(jacobian[i] * jacobian[i:])
+        blocks[:, i, i:] = blocks[:, i:, i] = below.T
     diagonal = np.einsum("nii->in", blocks)
     floor = SMALLEST * diagonal.mean(axis=1, keepdims=True)
     extra = damping * np.maximum(diagonal, floor) + np.finfo(float).tiny
@@ -127,7 +126,7 @@ def _solve(
     inverse = np.linalg.inv(blocks)  # (N, 5, 5)
 
     def times(s: Array) -> Array:
-        image = pairs.by_voxel((jacobian * pairs.spread(s)).sum(axis=0))
+        image = pairs.by_voxel(np.einsum("ip,ip->p", jacobian, pairs.spread(s)))
         return pairs.by_ball(jacobian * image[pairs.voxel]) + extra * s
 
     def condition(s: Array) -> Array:

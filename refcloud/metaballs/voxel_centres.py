@@ -28,7 +28,7 @@ def random(work: Work, count: int, settings: Settings) -> Listed:
 
 def _on_voxels(work: Work, chosen: Numbers, settings: Settings) -> Listed:
     """Give each voxel the ball of the cluster around it, and its best height."""
-    points = work.positions()
+    points = work.positions
     clusters = clusters_around(points, points[chosen])
     settings.watch("clusters", work, clusters)
     overlap = settings.overlap or OVERLAP

@@ -59,7 +59,8 @@ def test_a_level_has_balls_of_its_own(made) -> None:
 def test_the_same_seed_gives_the_same_bits(cloud) -> None:
     a, b = (levels_of_detail(cloud(pad=1), counts=(4, 9), seed=2) for _ in "ab")
     assert a.finest.centers.tobytes() == b.finest.centers.tobytes()
-    other = levels_of_detail(cloud(pad=1), counts=(4, 9), seed=3)
+    # Two clusters to start from: some seeds end in the same ones, to the bit.
+    other = levels_of_detail(cloud(pad=1), counts=(4, 9), seed=4)
     assert other.finest.centers.tobytes() != a.finest.centers.tobytes()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -84,6 +85,51 @@ def test_a_ball_between_voxels_has_no_pairs():
     nothing = list_pairs(work, centers[:1], np.array([0.1]), "wyvill")
     assert not nothing.forward(np.ones(1)).any()
     assert nothing.backward(nothing.target).tolist() == [0.0]
+
+
+@pytest.mark.parametrize("edges", [(1.0, 1.0, 1.0), (0.5, 2.0, 1.0), (4.0, 0.5, 0.5)])
+def test_voxels_on_the_rim_are_no_pairs(edges):
+    # Sums of halves are exact: q is 1 on the rim, and not a rounding below.
+    work = replace(make_work(0), edges=np.array(edges))
+    centers, radii = np.array([[2.0, 2.0, 1.0], [0.5, 1.0, 2.0]]), np.array([2.0, 1.5])
+    pairs = list_pairs(work, centers, radii, "gaussian")
+    away = np.stack(
+        np.meshgrid(*(edge * np.arange(-9.0, 10) for edge in edges), indexing="ij"), -1
+    )
+    inside = [
+        np.square(away - center).sum(axis=-1) < radius**2
+        for center, radius in zip(centers, radii, strict=True)
+    ]
+    rim = [
+        np.square(away - center).sum(axis=-1) == radius**2
+        for center, radius in zip(centers, radii, strict=True)
+    ]
+    assert np.any(rim)
+    every = np.bincount(pairs.ball, minlength=2)
+    assert every.tolist() == [int(each.sum()) for each in inside]
+    assert pairs.q.max() < 1.0
+    first = pairs.away[:, pairs.ball == 0].T + centers[0]
+    assert sorted(first.tolist()) == sorted(away[inside[0]].tolist())
+
+
+@pytest.mark.parametrize("longest", [0, 1, 2])
+def test_needles_and_sheets_list_hardly_more_rows_than_voxels(longest, monkeypatch):
+    # Cells 1e4 times longer than wide: a ball of radius 2 reaches 1e5 of them.
+    edges = np.full(3, 1e4 ** (-1 / 3))
+    edges[longest] = 1e4 ** (2 / 3)
+    work = replace(make_work(0), edges=edges)
+    listed_at: list[int] = []
+    repeat = np.repeat
+
+    def counted(values, counts, axis=None):
+        listed_at.append(np.shape(values)[-1])
+        return repeat(values, counts, axis)
+
+    monkeypatch.setattr("refcloud.metaballs.pairs.np.repeat", counted)
+    pairs = list_pairs(work, np.zeros((1, 3)), np.array([2.0]), "wyvill")
+    # One slice, and across it a disc of pi R^2 over the area of a small side.
+    assert len(pairs.q) == pytest.approx(4.0 * np.pi * 1e4 ** (2 / 3), rel=0.02)
+    assert max(listed_at) < 100
 
 
 def test_cells_are_scaled_by_their_geometric_mean():

@@ -18,7 +18,7 @@ def peer_error(work, count: int, seed: int) -> float:
     sparse = pytest.importorskip("scipy.sparse", reason="needs scikit-learn's scipy")
     cluster = pytest.importorskip("sklearn.cluster", reason="needs scikit-learn")
     linear = pytest.importorskip("sklearn.linear_model", reason="needs scikit-learn")
-    points = work.positions()
+    points = work.positions
     means = cluster.KMeans(count, n_init=1, random_state=seed).fit(points)
     centers = means.cluster_centers_.astype(float)
     labels = means.labels_.astype(np.int64)
@@ -44,7 +44,7 @@ def error_of(work, balls) -> float:
 
 
 # How far the error lies below the peer's: the median of three of the paper's clouds.
-# What was measured is 2 to 16 points more; the peer here takes its best of overlaps.
+# What was measured is 1 to 3 points more; the peer here takes its best of overlaps.
 GOALS = {
     ("quick", 30): 0.07,
     ("quick", 100): 0.09,

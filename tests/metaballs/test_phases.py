@@ -28,7 +28,7 @@ def fitted(cloud):
     """Give a cloud's clusters, its work, and the pairs of the paper's balls on it."""
     work = prepare(cloud())
     assert work is not None
-    points = work.positions()
+    points = work.positions
     clusters = adaptive_kmeans(points, 25)
     sigma = rms_radii(
         points, clusters.assignment, centers=clusters.centers, spacing=1.0
@@ -46,7 +46,7 @@ def quantisation(points, clusters) -> float:
 def test_e18_raster_order_costs_six_times_as_much_on_the_papers_cloud(count):
     work = prepare(generate("ellipsoid", seed=1))
     assert work is not None
-    points = work.positions()
+    points = work.positions
     best = quantisation(points, lloyd(points, np.ones(len(points)), count))
     raster, shuffled = (
         quantisation(points, adaptive_kmeans(points, count, order=order))
@@ -62,9 +62,9 @@ def test_e18_a_sigma_of_0_leaves_a_ball_without_a_design(fitted):
     # Eq 23 as printed: a cluster of one voxel spreads over nothing.
     printed = np.sqrt(np.maximum(sigma**2 - 0.25, 0.0))
     assert printed.min() >= 0.0
-    lone = adaptive_kmeans(work.positions()[:3], 3)
+    lone = adaptive_kmeans(work.positions[:3], 3)
     own = rms_radii(
-        work.positions()[:3], lone.assignment, centers=lone.centers, spacing=1e-150
+        work.positions[:3], lone.assignment, centers=lone.centers, spacing=1e-150
     )
     np.testing.assert_allclose(own, 0.5e-150)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -137,7 +137,7 @@ def test_phase_3_lowers_the_error_of_the_papers_own_figures(cloud):
     grid = cloud()
     work = prepare(grid)
     assert work is not None
-    points = work.positions()
+    points = work.positions
     clusters = adaptive_kmeans(points, 30)
     sigma = rms_radii(
         points, clusters.assignment, centers=clusters.centers, spacing=1.0
@@ -161,7 +161,7 @@ def test_heights_meet_their_conditions_where_balls_hardly_differ(cloud, overlap)
     # Block pivoting cycles where the condition passes 1e4: here it reaches that.
     work = prepare(cloud())
     assert work is not None
-    points = work.positions()
+    points = work.positions
     clusters = lloyd(points, np.ones(len(points)), 12)
     sigma = rms_radii(
         points, clusters.assignment, centers=clusters.centers, spacing=1.0
