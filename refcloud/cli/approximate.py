@@ -87,7 +87,7 @@ def run(words: Sequence[str]) -> int:
     path = ready(given.named(name), SUFFIXES)
     shown = given.options.get(PICTURE.flag)
     if shown is not None:
-        shown = ready(shown, PICTURES)
+        shown = ready(shown, PICTURES, PICTURE.flag)
     stages = _Stages()
     with stages.stage("load"):
         grid = load_voxels(source)

@@ -62,7 +62,7 @@ def run(words: Sequence[str]) -> int:
     subject, how = bench.SUBJECTS[name], Measurement(**given.of(OPTIONS))
     figure = given.options.get(PLOT.flag)
     if figure is not None:
-        figure = ready(figure, FIGURES)
+        figure = ready(figure, FIGURES, PLOT.flag)
     rows = bench.run(subject, how.quick)
     if how.json:
         say(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))

@@ -14,8 +14,8 @@ from refcloud.refusal import complaint
 FLAG = "--output"
 
 
-def ready(path: str | Path, suffixes: tuple[str, ...]) -> Path:
-    """Find out that a file can be written, before any work is done for it.
+def ready(path: str | Path, suffixes: tuple[str, ...], flag: str = FLAG) -> Path:
+    """Find out that the file of an option can be written, before any work is done.
 
     Raises
     ------
@@ -24,25 +24,25 @@ def ready(path: str | Path, suffixes: tuple[str, ...]) -> Path:
     """
     path = Path(path)
     try:
-        _check_place(path, suffixes)
+        _check_place(path, suffixes, flag)
         _try(path)
     except OSError as error:
         expected = "a file that can be written"
         got = f"{str(path)[:60]} ({error.strerror})"
         advice = "choose another name or folder"
-        raise ValueError(complaint(FLAG, expected, got, advice)) from None
+        raise ValueError(complaint(flag, expected, got, advice)) from None
     return path
 
 
-def _check_place(path: Path, suffixes: tuple[str, ...]) -> None:
+def _check_place(path: Path, suffixes: tuple[str, ...], flag: str) -> None:
     if path.is_dir():
-        raise ValueError(complaint(FLAG, "a file's name", f"the folder {path}"))
+        raise ValueError(complaint(flag, "a file's name", f"the folder {path}"))
     if path.suffix.lower() not in suffixes:
         expected = "a name ending in " + " or ".join(suffixes)
-        raise ValueError(complaint(FLAG, expected, repr(path.name)))
+        raise ValueError(complaint(flag, expected, repr(path.name)))
     if not path.parent.is_dir():
         expected = "a name in an existing folder"
-        raise ValueError(complaint(FLAG, expected, f"{path.parent}", "create it first"))
+        raise ValueError(complaint(flag, expected, f"{path.parent}", "create it first"))
 
 
 def _try(path: Path) -> None:

@@ -36,7 +36,7 @@ class Clusters:
     assignment
         Which centre each point belongs to, shape (K,).
     epochs
-        How often all points were visited.
+        How often all points were visited and centres moved.
     """
 
     centers: Array
@@ -125,7 +125,7 @@ def lloyd(
     seed
         Where the centres start: drawn by weight times squared distance (k-means++).
     rounds
-        How often all centres move.
+        How often all centres move, unless no point changes its centre before.
 
     Returns
     -------
@@ -144,9 +144,14 @@ def lloyd(
     if largest > 0.0:
         weights = weights / largest
     centers = scaled[spread_start(scaled, weights, count, seed)]
-    for _ in range(rounds if len(centers) else 0):
-        centers = _means(scaled, weights, centers, _nearest(scaled, centers))
-    return _clusters(scaled, centers, middle, scale, rounds)
+    labels, epoch = np.zeros(0, dtype=np.intp), 0
+    while epoch < rounds and len(centers):
+        before, labels = labels, _nearest(scaled, centers)
+        if np.array_equal(labels, before):  # all further rounds would repeat this
+            break
+        centers = _means(scaled, weights, centers, labels)
+        epoch += 1
+    return _clusters(scaled, centers, middle, scale, epoch)
 
 
 def clusters_around(points: Array, centers: Array) -> Clusters:

@@ -117,6 +117,18 @@ def test_more_rounds_never_cost_more(seed):
     assert all(b <= a * (1.0 + 1e-6) for a, b in pairwise(costs))
 
 
+@given(seed=seeds)
+@settings(max_examples=10)
+def test_rounds_end_where_no_point_changes_its_centre(seed):
+    points = scattered(seed, 60)
+    weights = 0.1 + scattered(seed, 60, word=1)[:, 0]
+    end = lloyd(points, weights, 5, seed=seed, rounds=10_000)
+    assert end.epochs < 40  # worst of 1000 seeds: 13
+    again = lloyd(points, weights, 5, seed=seed, rounds=end.epochs)
+    assert again.centers.tobytes() == end.centers.tobytes()
+    assert again.assignment.tobytes() == end.assignment.tobytes()
+
+
 def test_heavy_points_draw_the_centres():
     weights = np.where(LATTICE[:, 0] < 4, 100.0, 1.0)
     found = lloyd(LATTICE, weights, 20)
