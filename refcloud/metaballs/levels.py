@@ -35,11 +35,13 @@ from refcloud.refusal import complaint
 
 COUNTS = (30, 100, 300, 1000)
 MOST_LEVELS = 16
-# A level's pixels differ from the last level's by at most so many times the relative
-# difference of the optical depth, both as root mean squares. Measured, not proved: the
-# worst seen was 3.9, for two clouds, both looks, and pictures of 12 to 256 pixels. Most
-# of it is light that other balls catch, which does not fade with distance.
-PICTURE_SHARE = 5.0
+# How far a level's pixels are from the last level's, a root mean square over those that
+# the cloud covers: at most PICTURE_SHARE times the relative difference of the optical
+# depth, and PICTURE_FLOOR more. Measured, neither proved nor certified: the worst of
+# 1900 pictures of 90 generated clouds (ellipsoids, cumuli, grids of random voxels; both
+# looks) was 0.11 above 5 times the difference. The floor is there because light is one
+# number for each ball: other balls of the same density are lit in other steps.
+PICTURE_SHARE, PICTURE_FLOOR = 5.0, 0.25
 
 
 @dataclass(frozen=True, repr=False)
@@ -180,8 +182,9 @@ def choose_level(
 ) -> Metaballs:
     """Choose the level with the fewest balls that a camera can do with.
 
-    Formula: the first level with 5 d sqrt(s) <= tolerance, d its relative difference of
-    optical depth from the last level, s the share of the picture that the cloud covers
+    Formula: the first level with (5 d + 0.25) sqrt(s) <= tolerance, d its relative
+    difference of optical depth from the last level, s the share of the picture that the
+    cloud covers
 
     Parameters
     ----------
@@ -191,7 +194,8 @@ def choose_level(
         The eye: it says how much of the picture the cloud's box covers.
     tolerance
         Root mean square difference of the picture from the last level's. The bound is
-        measured, not proved, and single pixels differ by more.
+        measured with a margin of two over all that was seen. It is neither proved nor
+        certified, since nothing is drawn to choose; and single pixels differ by more.
 
     Returns
     -------
@@ -207,11 +211,17 @@ def choose_level(
     >>> [len(choose_level(made, far, tolerance=t)) for t in (1.0, 0.0)]
     [1, 8]
     """
-    share = covered_share(levels.finest, camera)
-    for balls, difference in zip(levels.levels, levels.differences, strict=True):
-        if PICTURE_SHARE * difference * math.sqrt(share) <= tolerance:
+    bounds = picture_bounds(levels, covered_share(levels.finest, camera))
+    for balls, bound in zip(levels.levels, bounds, strict=True):
+        if bound <= tolerance:
             return balls
     return levels.finest
+
+
+def picture_bounds(levels: Levels, share: float) -> Array:
+    """Bound each level's difference of picture from the last level's, shape (L,)."""
+    off = PICTURE_SHARE * levels.differences + PICTURE_FLOOR
+    return np.where(levels.differences > 0.0, off * math.sqrt(share), 0.0)
 
 
 def covered_share(balls: Metaballs, camera: Camera | OrthographicCamera) -> float:

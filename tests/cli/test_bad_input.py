@@ -91,7 +91,7 @@ BAD = {
     "approximate voxels.npz --count 0": r"--count: .* in \[1, 1000000\], got 0",
     "approximate voxels.npz --count 1000000000": r"--count: .* got 1000000000; choose",
     "approximate voxels.npz --tolerance -1": r"--tolerance: .* in \(0, 1\), got -1",
-    "approximate voxels.npz --method blob": "--method: expected one of 'quick', .*'blob'",
+    "approximate voxels.npz --method blob": "--method: expected one of .*'blob'",
     "approximate voxels.npz --levels --count 3": "--levels: .*, got --count",
     "bench noise --plot a.jpg": "--plot: expected a name ending in .png",
     f"{RENDER} -o a.jpg": "--output: expected a name ending in .png or .npy",
