@@ -1,14 +1,10 @@
 """A map of where each algorithm keeps its digits, over its parameters and past them."""
 
 from refcloud.bench.stability.chart import bare_map, labelled_map
-from refcloud.bench.stability.light import PROBES as LIGHT
-from refcloud.bench.stability.noises import PROBES as NOISES
 from refcloud.bench.stability.probe import Axis, Panel, Probe, panel, panels
-from refcloud.bench.stability.rendering import PROBES as RENDERING
+from refcloud.bench.stability.probes import PROBES
 from refcloud.bench.stability.table import rows_of, text_of
 from refcloud.bench.stability.verdict import Cell, Found, judge, relative_error
-
-PROBES = (*NOISES, *LIGHT, *RENDERING)
 
 __all__ = [
     "PROBES",
