@@ -2,10 +2,11 @@
 
 No bound that is known beforehand tells how far slabs and a light volume are from the
 integral, so the march measures it: some hundred rays, chosen by a hash, are integrated
-exactly, and each setting in turn, from the coarsest on, is tried on them. The first
-whose largest error, with a margin, stays below the tolerance marches all rays. Where
-none does, rays are integrated by the quadrature, whose light comes from a lattice that
-leans with the sun's rays if that passes, and is exact if it does not.
+as `refcloud.march.reference` does, and each setting in turn, from the coarsest on, is
+tried on them. The first whose largest error, with a margin, stays below the tolerance
+marches all rays. Where none does, rays are integrated by the quadrature, whose light
+comes from a lattice that leans with the sun's rays if that passes, and is exact if it
+does not.
 
 A sample can miss the worst ray. That is why a margin stands on the largest error seen;
 the risk that is left is small and is hunted by a test with generated scenes.
@@ -25,9 +26,10 @@ from refcloud.march.fast import (
     fast,
     reached,
 )
-from refcloud.march.gather import Counts
-from refcloud.march.lines import frame_numbers
+from refcloud.march.gather import Counts, Slabs
+from refcloud.march.lines import Frame, frame_numbers
 from refcloud.march.mixing import PHYSICAL
+from refcloud.march.reference import Reference, reference_for
 from refcloud.march.sampling import CHECKED, chosen_rays, edge_rays
 from refcloud.march.shafted import SHAFTINGS, Shafting, shafted, shafts_of
 from refcloud.march.sliced import SLICINGS, Slicing, sliced
@@ -41,10 +43,11 @@ MARGIN = 2.0
 EDGE_MARGIN = 1.25
 # Below it single precision shows.
 FINEST = 1e-5
-# From coarse to fine; each is about twice as slow as the one before.
+# From coarse to fine; each takes up to twice as long as the one before.
 SETTINGS = (
     Setting(4.0, 1),
     Setting(2.0, 1),
+    Setting(4.0 / 3.0, 1),
     Setting(1.0, 1),
     Setting(0.5, 1),
     Setting(0.5, 2),
@@ -89,11 +92,13 @@ def _marched(
         radiance, column = task.exact(HIDDEN * tolerance / task.brightest)
         return radiance, column, (), ()
 
-    # 1. The sample, exactly.
+    # 1. The sample, and what it shows.
     some = task.taken(sample)
     least = HIDDEN * tolerance / task.brightest
-    expected = some.exact(0.1 * least)
+    reference = reference_for(some, volumes, tolerance, 0.1 * least)
+    expected = reference.of(some)
     watch("checked rays", sample)
+    watch("gap of the reference", reference.gap)
 
     # 2. Slices, which march all rays of a camera or none.
     inner = volumes.cloud
@@ -103,19 +108,14 @@ def _marched(
         if found is None:
             break
         tried[slicing] = some.error((found[0][sample], found[1][sample]), expected)
-        if MARGIN * tried[slicing] > tolerance:
-            continue
-        steepest = edge_error(task, found, 0.1 * least)
-        bound = max(MARGIN * tried[slicing], EDGE_MARGIN * steepest)
+        bound = MARGIN * tried[slicing] + reference.gap
+        if bound <= tolerance:
+            steepest = EDGE_MARGIN * edge_error(task, found, reference)
+            bound = max(bound, steepest + reference.gap)
         if bound <= tolerance:
             watch("errors of slices", tried)
-            row = Skipped(
-                "march",
-                "exact rays",
-                len(found[1]),
-                len(found[1]),
-                bound,
-            )
+            count = len(found[1])
+            row = Skipped("march", "exact rays", count, count, bound)
             note = (
                 f"march: slices, {slicing.finer:g} samples of the image and"
                 f" {slicing.scale} of light per cell; off by {tried[slicing]:.2g} at"
@@ -128,6 +128,7 @@ def _marched(
     small = lattice(inner)
     frames = frame_numbers(small, task.directions)
     lights: dict[Scale, list[NDArray[np.float32]]] = {}
+    made: dict[tuple[Setting, Frame], Slabs] = {}
 
     def march(
         rays: Task, frames: NDArray[np.intp], setting: Setting, counts: Counts
@@ -149,25 +150,33 @@ def _marched(
             counts=counts,
             frames=frames,
             lights=lights[setting.scale],
+            made=made,
         )
 
     errors: dict[Setting, float] = {}
+    most = (tolerance - reference.gap) / MARGIN
     for setting in SETTINGS:
+        if errors and out_of_reach(setting, errors, most):
+            continue
+        made.clear()
         errors[setting] = some.error(
             march(some, frames[sample], setting, Counts()), expected
         )
-        if MARGIN * errors[setting] <= tolerance:
+        if errors[setting] <= most:
             break
     watch("errors of settings", errors)
 
     # 4. All rays, with the one that passed.
     setting, error = next(reversed(errors.items()))
-    if MARGIN * error > tolerance:
+    bound = MARGIN * error + reference.gap
+    if bound > tolerance:
+        if reference.tables is not None:
+            expected = some.exact(0.1 * least)
         return _by_quadrature(task, some, expected, tolerance, watch, inner)
     counts = Counts()
     radiance, column = march(task, frames, setting, counts)
     rows = (
-        Skipped("march", "exact rays", len(column), len(column), MARGIN * error),
+        Skipped("march", "exact rays", len(column), len(column), bound),
         Skipped("march", "passages through empty slabs", counts.empty, counts.all),
         Skipped(
             "march",
@@ -178,8 +187,8 @@ def _marched(
         ),
     )
     note = (
-        f"march: slabs of {setting.thickness:g} cells, {setting.scale} samples of light"
-        f" per cell; off by {error:.2g} at most on {len(sample)} checked rays"
+        f"march: slabs of {setting.thickness:.3g} cells, {setting.scale} samples of"
+        f" light per cell; off by {error:.2g} at most on {len(sample)} checked rays"
     )
     return radiance, column, rows, (note,)
 
@@ -240,11 +249,22 @@ def by_slices(
     )
 
 
-def edge_error(task: Task, found: tuple[Array, Array], least: float) -> float:
+def out_of_reach(setting: Setting, errors: dict[Setting, float], most: float) -> bool:
+    """Tell that a setting is not worth a trial: thinner slabs will be needed.
+
+    A sum over slabs errs by the square of their thickness at best, so the last trial
+    tells how much is to be hoped for. Only time depends on whether that is true.
+    """
+    last, error = next(reversed(errors.items()))
+    hoped = error * (setting.thickness / last.thickness) ** 2
+    return hoped > most and setting != SETTINGS[-1] and setting.scale == last.scale
+
+
+def edge_error(task: Task, found: tuple[Array, Array], reference: Reference) -> float:
     """Give the largest error of a camera's picture on the rays where it is steepest."""
     if task.camera is None:
         return 0.0
     thickest = float(np.max(task.medium.sigma_t))
     edges = edge_rays(task.camera, -np.expm1(-thickest * found[1]))
     some = task.taken(edges)
-    return some.error((found[0][edges], found[1][edges]), some.exact(least))
+    return some.error((found[0][edges], found[1][edges]), reference.of(some))

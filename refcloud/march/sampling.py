@@ -12,7 +12,8 @@ from refcloud.march.task import Task
 from refcloud.noise import uniform
 
 CHECKED = 256  # rays of the hashed sample
-DRAWN = 8 * CHECKED  # rays that are looked at for it; of fewer, each one
+AT_ONCE = 2 * CHECKED  # rays that are looked at for it together
+DRAWN = 8 * CHECKED  # rays that are looked at for it at most; of fewer, each one
 EDGES = 64  # rays where a picture is steepest
 
 
@@ -23,10 +24,15 @@ def chosen_rays(task: Task) -> NDArray[np.intp]:
     if count > DRAWN:
         hashed = uniform(np.arange(DRAWN), seed=0) * count
         drawn = np.unique(hashed.astype(np.intp))
-    held = columns(task.grid, task.origins[drawn], task.directions[drawn])
-    drawn = drawn[held > 0.0]
-    order = np.argsort(uniform(drawn, seed=0), kind="stable")
-    return np.sort(drawn[order[:CHECKED]])
+    drawn = drawn[np.argsort(uniform(drawn, seed=0), kind="stable")]
+    chosen = drawn[:0]
+    for start in range(0, len(drawn), AT_ONCE):
+        some = drawn[start : start + AT_ONCE]
+        held = columns(task.grid, task.origins[some], task.directions[some])
+        chosen = np.concatenate([chosen, some[held > 0.0]])
+        if len(chosen) >= CHECKED:
+            break
+    return np.sort(chosen[:CHECKED])
 
 
 def edge_rays(camera: AnyCamera, opacity: Array) -> NDArray[np.intp]:

@@ -15,8 +15,8 @@ from refcloud.camera import Camera, rays
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import unit_vector
 from refcloud.march import certified, integrate, shafts
+from refcloud.march.cubics import catmull_rom
 from refcloud.march.shafted import SHAFTINGS
-from refcloud.march.shafts import catmull_rom
 from refcloud.optics import Sun
 from refcloud.transport import column_density
 
