@@ -3,8 +3,8 @@
 Three kinds of rays are looked at:
 
 - a hashed *sample* of those that meet density;
-- the *steepest* of the picture, once all are marched: errors sit at edges, and few of
-  many rays may be there;
+- the *steepest* of the picture, once all are marched: errors sit at edges and in bright
+  spots, and few of many rays may be there;
 - the *gauged* ones of `refcloud.march.reference`, which tell how far off it is that the
   others are held against.
 
@@ -26,9 +26,13 @@ from refcloud.march.task import Task
 from refcloud.march.volumes import Volumes
 
 Found = tuple[Array, Array]  # radiance (N, 3), columns of density (N,)
-# On the largest error of the sample: what other rays may have beyond it.
+# On the largest error of the sample: what other rays may have beyond it. Among 852
+# pictures by slices of generated clouds, sharp ones with them, the largest error
+# anywhere was more than 1.5 times that of the sample in 2 %, and more than twice in 2.
 MARGIN = 2.0
-# The steepest rays are nearly always the worst ones, so less is left beyond them.
+# On that of the steepest rays. They are not always the worst, but where the sample
+# misses by its margin they mostly are: in those two pictures the largest error was .99
+# of theirs, which is what the margin stands on, and 2.6 times.
 EDGE_MARGIN = 1.25
 
 
@@ -84,12 +88,22 @@ class Certificate:
         return largest + self.reference.gap
 
     def edge_error(self, found: Found) -> float:
-        """Give the largest error of a march of all rays where it is steepest."""
+        """Give the largest error of a march of all rays where it is steepest.
+
+        That is where opacity changes most, and where light does: a narrow lobe makes a
+        bright spot of few rays.
+        """
+        light, column = found
         thickest = float(np.max(self.task.medium.sigma_t))
-        opacity = -np.expm1(-thickest * found[1])
-        edges = edge_rays(opacity.reshape(self.task.rows))
+        opacity = -np.expm1(-thickest * column)
+        red, green, blue = light.T
+        brightness = np.maximum(np.maximum(red, green), blue)
+        edges = np.union1d(
+            edge_rays(opacity.reshape(self.task.rows)),
+            edge_rays(brightness.reshape(self.task.rows)),
+        )
         steep = self.task.taken(edges)
-        return steep.error((found[0][edges], found[1][edges]), self.reference.of(steep))
+        return steep.error((light[edges], column[edges]), self.reference.of(steep))
 
     def exactly(self) -> Certificate:
         """Hold against the quadrature itself."""

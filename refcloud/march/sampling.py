@@ -16,7 +16,7 @@ AT_ONCE = 2 * CHECKED  # rays that are looked at for it together
 # Rays that are looked at for it at most; of fewer, each one. A small cloud in a large
 # picture is met by few of them: then all that meet it are checked.
 DRAWN = 64 * CHECKED
-EDGES = 64  # rays where a picture is steepest
+EDGES = 48  # rays where a picture is steepest
 LEVEL = 1e-6  # steps below it are taken together
 
 
@@ -43,21 +43,21 @@ def chosen_rays(task: Task) -> NDArray[np.intp]:
     return np.sort(chosen[:CHECKED])
 
 
-def edge_rays(opacity: Array) -> NDArray[np.intp]:
+def edge_rays(picture: Array) -> NDArray[np.intp]:
     """Choose the rays where a picture is steepest: errors sit at edges.
 
     Parameters
     ----------
-    opacity
+    picture
         What a march found along each ray, shape (H, W), neighbours beside each other.
 
     Returns
     -------
     Numbers of rays, ascending: those with the largest steps to a neighbour.
     """
-    steep = np.zeros_like(opacity)
+    steep = np.zeros_like(picture)
     for axis in (0, 1):
-        step = np.abs(np.diff(opacity, axis=axis))
+        step = np.abs(np.diff(picture, axis=axis))
         near, far = [slice(None)] * 2, [slice(None)] * 2
         near[axis], far[axis] = slice(None, -1), slice(1, None)
         for side in (tuple(near), tuple(far)):
