@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 from typing import Annotated, Literal
 
+import numpy as np
+
 from refcloud.camera import Camera, OrthographicCamera, refuse_large
 from refcloud.checking import checked, complaint
 from refcloud.choices import AMBIENT, SUN, default_medium, framed
@@ -194,11 +196,14 @@ def render(
         notes.append(note)
     if camera is None:
         camera = framed(drawn, width, height)
-        notes.append(
-            "camera: eye {:.4g} {:.4g} {:.4g}, target {:.4g} {:.4g} {:.4g}".format(
-                *camera.eye, *camera.target
-            )
+        # Far from the origin an eye and its target share their first digits.
+        near = np.linalg.norm(camera.eye - camera.target)
+        far = max(np.abs([camera.eye, camera.target]).max() / near, 1.0)
+        eye, target = (
+            " ".join(f"{x:.{4 + int(np.log10(far))}g}" for x in place)
+            for place in (camera.eye, camera.target)
         )
+        notes.append(f"camera: eye {eye}, target {target}")
     behind = Sky() if background is None else background
     lights = (SUN,) if suns is None else suns
     if march:

@@ -133,7 +133,7 @@ def _some(
     count = len(origins)
     sigma_t = np.atleast_1d(medium.sigma_t)  # (1,), or (3,) of a coloured medium
     eyeward = mixing.light_absorption_through_cloud * sigma_t
-    sunward = mixing.light_absorption_toward_sun * float(sigma_t.max())
+    sunward = mixing.light_absorption_toward_sun * sigma_t
 
     # 1. Cut the rays, and integrate the density up to each point.
     pieces = cut(grid, origins, directions, [sun.direction for sun in suns])
@@ -149,7 +149,7 @@ def _some(
         deepest = min(deepest, -np.log(least))
     seen = np.flatnonzero(clearest * before < deepest)
     pieces, before, mass = taken(pieces, seen), before[seen], mass[seen]
-    pieces, before = thinner(pieces, before, mass, float(eyeward.max()), deepest)
+    pieces, before = thinner(pieces, before, mass, eyeward, deepest)
 
     # 2. Points on the pieces, and the light that reaches them from each sun. Where that
     # changes much along a piece, as beside a grazed face, the piece is cut further.
@@ -161,7 +161,9 @@ def _some(
         if not source.any():
             continue
         far = far_of(placed, sun, to_sun)
-        parts = parts_needed(sunward * far, np.ptp(rule[0]))
+        parts = np.ones(len(far), np.intp)
+        for rate in np.unique(sunward):
+            parts = np.maximum(parts, parts_needed(rate * far, np.ptp(rule[0])))
         gentle, steep = np.flatnonzero(parts == 1), np.flatnonzero(parts > 1)
         add(found, placed.taken(gentle), far[gentle], source, medium, mixing)
         if len(steep):

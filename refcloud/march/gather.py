@@ -19,6 +19,7 @@ from refcloud.march.planes import RIM, Planes, Singles, looked_up
 RAYS = 4096  # at a time: tables that stay in the cache
 BLOCK = 4  # slabs that are tested for emptiness at once
 STRETCH = 32  # blocks after which rays that have gone opaque are dropped
+ZERO = np.float32(0.0)
 
 
 @dataclass
@@ -116,25 +117,32 @@ def gather(
     return light, column
 
 
-def spaces(u: Singles, v: Singles, across: tuple[int, int]) -> NDArray[np.int32]:
-    """Give the number of the space between samples that each place lies in."""
+def spaces(
+    u: Singles, v: Singles, slab: NDArray[np.int32], across: tuple[int, int]
+) -> NDArray[np.int32]:
+    """Give the number of the space between samples that each place lies in.
+
+    Parameters
+    ----------
+    u, v
+        Places in cells, counted with the rim, shape (..., M).
+    slab
+        Number of the slab or block, which broadcasts with them.
+    across
+        V and U, with their rim.
+    """
     V, U = across
-    number = _whole(v, V)
-    number *= U
-    number += _whole(u, U)
+    # `clip` takes a fifth of the time of a maximum and a minimum.
+    number = np.clip(v, ZERO, np.float32(V - 1.5)).astype(np.int32)
+    number += slab * np.int32(V)
+    number *= np.int32(U)
+    number += np.clip(u, ZERO, np.float32(U - 1.5)).astype(np.int32)
     return number
-
-
-def _whole(place: Singles, count: int) -> NDArray[np.int32]:
-    shifted = place + np.float32(RIM)
-    np.maximum(shifted, np.float32(0.0), out=shifted)
-    np.minimum(shifted, np.float32(count - 1.5), out=shifted)
-    return shifted.astype(np.int32)
 
 
 def occupied(
     slabs: Slabs, lines: Lines, rays: NDArray[np.intp], start: int
-) -> tuple[NDArray[np.intp], NDArray[np.intp], Singles, Singles]:
+) -> tuple[NDArray[np.intp], NDArray[np.int32], Singles, Singles]:
     """Find the passages of a stretch around which there is density.
 
     Parameters
@@ -148,47 +156,55 @@ def occupied(
 
     Returns
     -------
-    Ray, slab, u and v in the slab's middle, shape (M,): ray by ray as it goes.
+    Ray, slab, u and v in the slab's middle, counted with the rim, shape (M,): ray by
+    ray as it goes.
     """
-    size = slabs.across[0] * slabs.across[1]
-    first, step = slabs.first + 0.5 * slabs.thickness, slabs.thickness
+    first = np.float32(slabs.first + 0.5 * slabs.thickness)
+    step = np.float32(slabs.thickness)
+    slope = lines.slope.take(rays, axis=1)
+    at = lines.at.take(rays, axis=1) + np.float32(RIM)
     # 1. Blocks, told by their middles.
     end = min(start + STRETCH * BLOCK, slabs.count)
-    block = np.arange(start // BLOCK, -(-end // BLOCK))
-    w = first + step * (block * BLOCK + 0.5 * (BLOCK - 1))
-    u, v = (
-        lines.slope[k].take(rays)[:, None] * w.astype(np.float32)
-        + lines.at[k].take(rays)[:, None]
-        for k in range(2)
-    )
-    number = spaces(u, v, slabs.across)
-    number += (block * size).astype(np.int32)
-    row, which = np.divmod(np.flatnonzero(slabs.blocks.take(number)), len(block))
+    block = np.arange(start // BLOCK, -(-end // BLOCK), dtype=np.int32)
+    w = first + step * (BLOCK * block + 0.5 * (BLOCK - 1)).astype(np.float32)
+    u, v = (slope[k][:, None] * w + at[k][:, None] for k in range(2))
+    which = np.flatnonzero(slabs.blocks.take(spaces(u, v, block, slabs.across)))
+    row = which // len(block)
+    which -= row * len(block)
 
-    # 2. Their slabs.
-    ray = rays[row]
-    slab = block[which][:, None] * BLOCK + np.arange(BLOCK)  # (B, BLOCK)
-    u, v = lines.places(ray, (first + step * slab).astype(np.float32))
-    number = spaces(u, v, slabs.across)
-    number += slab.astype(np.int32) * np.int32(size)
-    found = np.flatnonzero(slabs.occupied.take(number))
-    return (
-        ray.take(found // BLOCK),
-        slab.reshape(-1).take(found),
-        u.reshape(-1).take(found),
-        v.reshape(-1).take(found),
-    )
+    # 2. Their slabs: first ones of all blocks, then second ones, in rows as long as
+    # can be.
+    slab = block.take(which) * np.int32(BLOCK)
+    places = np.empty((2, BLOCK, len(row)), np.float32)
+    number = np.empty(places.shape[1:], np.int32)
+    slope, at = slope.take(row, axis=1), at.take(row, axis=1)
+    w = first + step * slab.astype(np.float32)
+    for k in range(BLOCK):
+        np.multiply(slope, w, out=places[:, k])
+        places[:, k] += at
+        u, v = places[:, k]
+        number[k] = spaces(u, v, slab + np.int32(k), slabs.across)
+        w += step
+    # 3. Those that hold density, in the order in which their rays go.
+    found = np.flatnonzero(slabs.occupied.take(number).T)
+    which = found // BLOCK
+    found -= which * BLOCK
+    slab = slab.take(which) + found.astype(np.int32)
+    found *= len(row)
+    found += which
+    u, v = (axis.take(found) for axis in places.reshape(2, -1))
+    return rays.take(row.take(which)), slab, u, v
 
 
 def passages(
-    slabs: Slabs, lines: Lines, ray: NDArray[np.intp], slab: NDArray[np.intp]
+    slabs: Slabs, lines: Lines, ray: NDArray[np.intp], slab: NDArray[np.int32]
 ) -> Singles:
     """Give the lengths of rays in slabs, scene units, shape (M,)."""
     step = np.float32(slabs.thickness)
     begin = np.float32(slabs.first) + step * slab.astype(np.float32)
     within = np.minimum(begin + step, lines.high.take(ray))
     within -= np.maximum(begin, lines.low.take(ray))
-    np.maximum(within, np.float32(0.0), out=within)
+    np.maximum(within, ZERO, out=within)
     within *= lines.speed.take(ray)
     return within
 

@@ -91,7 +91,7 @@ def glow(
         for start in range(0, len(origins), chunk):
             part = slice(start, start + chunk)
             o, d = origins[part], directions[part]
-            samples = _between_centres(grid, o, d, float(light.sigma_t.max()))
+            samples = _between_centres(grid, o, d, light.sigma_t)
             weights = [harmonics_toward(light, -d, k) for k in range(len(terms))]
             radiance[part] = _sum(light, samples, terms, weights, len(o), thin=True)
         return radiance
@@ -145,16 +145,16 @@ def _sum(
 
 
 def _between_centres(
-    grid: Lattice, origins: Array, directions: Array, rate: float
+    grid: Lattice, origins: Array, directions: Array, rates: Array
 ) -> Samples:
     """Take four Gauss points in every piece of a ray, thick ones cut."""
     count = len(origins)
     pieces = cut(grid, origins, directions)
     mass = pieces.length * (density_at(pieces, POINTS) @ WEIGHTS)
     before = before_each(pieces.ray, mass, count)
-    seen = np.flatnonzero(rate * before < DEEPEST)
+    seen = np.flatnonzero(rates.min() * before < DEEPEST)
     pieces, before, mass = taken(pieces, seen), before[seen], mass[seen]
-    pieces, before = thinner(pieces, before, mass, rate, DEEPEST)
+    pieces, before = thinner(pieces, before, mass, rates, DEEPEST)
     rho = density_at(pieces, POINTS)
     column = before[:, None] + pieces.length[:, None] * (rho @ UP_TO.T)
     amount = rho * (pieces.length[:, None] * WEIGHTS)

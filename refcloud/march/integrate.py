@@ -115,6 +115,7 @@ def integrate(
         background=behind,
         observe=observe,
         volumes=volumes,
+        shape=rays.shape,
     )
     if observe is not None:
         observe("skipped", found.skipped)

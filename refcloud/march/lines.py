@@ -64,12 +64,6 @@ class Lines:
     low: Singles
     high: Singles
 
-    def places(self, ray: NDArray[np.intp], w: Singles) -> tuple[Singles, Singles]:
-        """Give u and v of rays at w, shape (M,) or (M, K)."""
-        some = ray if w.ndim == 1 else ray[:, None]
-        u, v = (self.slope[k].take(some) * w + self.at[k].take(some) for k in range(2))
-        return u, v
-
 
 def frame_numbers(grid: Lattice, directions: Array) -> NDArray[np.intp]:
     """Give each ray a frame: the axis along which it passes most cells, and the sense.

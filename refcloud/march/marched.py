@@ -62,6 +62,7 @@ def marched(
     observe: Observer | None = None,
     camera: AnyCamera | None = None,
     volumes: tuple[LightVolume, ...] = (),
+    shape: tuple[int, ...] = (),
 ) -> Marched:
     """March rays, unchecked: the inner form of `integrate`.
 
@@ -79,6 +80,8 @@ def marched(
         Whose rays they are, row by row; None for any rays.
     volumes
         As `integrate`.
+    shape
+        Leading axes of the rays: which of them are neighbours.
 
     Returns
     -------
@@ -106,6 +109,7 @@ def marched(
         background,
         camera,
         volumes,
+        shape,
     )
     if tolerance > 0.0:
         radiance, column, rows, notes = to_tolerance(task, tolerance, observe)

@@ -36,6 +36,7 @@ def marched_multiple(
     observe: Observer | None = None,
     camera: AnyCamera | None = None,
     volumes: tuple[LightVolume, ...] = (),
+    shape: tuple[int, ...] = (),
 ) -> Marched:
     """March rays through solved light, unchecked: the inner form of `integrate`.
 
@@ -90,6 +91,7 @@ def marched_multiple(
         observe=observe,
         camera=camera,
         volumes=volumes,
+        shape=shape,
     )
     # 2. Light that was scattered more often.
     radiance = found.radiance + glow(cloud, origins, directions, light, tolerance)

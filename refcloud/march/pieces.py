@@ -30,9 +30,12 @@ def taken(pieces: Pieces, which: Numbers) -> Pieces:
 
 
 def thinner(
-    pieces: Pieces, before: Array, mass: Array, rate: float, deepest: float
+    pieces: Pieces, before: Array, mass: Array, rates: Array, deepest: float
 ) -> tuple[Pieces, Array]:
     """Cut pieces that are optically thick, down to where nothing shows.
+
+    Each channel cuts what it shows of them, the densest first, so that there are no
+    more pieces than light has changes. What it hides stays whole, for clearer ones.
 
     Parameters
     ----------
@@ -40,24 +43,47 @@ def thinner(
         P pieces.
     before, mass
         Columns of density in front of each and within it, shape (P,).
-    rate
-        Largest extinction per column.
+    rates
+        Extinctions per column of the channels, shape (C,).
     deepest
         Optical depth behind which nothing shows.
 
     Returns
     -------
-    Pieces of optical depth `THICKEST` at most, and the columns in front of them.
+    Pieces of optical depth `THICKEST` at most in each channel that shows them, and the
+    columns in front of them.
     """
+    different = np.unique(rates)[::-1]
+    for rate in different:
+        hidden_stays = bool(rate != different[-1])
+        pieces, before, mass = _thinner(
+            pieces, before, mass, float(rate), deepest, hidden_stays
+        )
+    return pieces, before
+
+
+def _thinner(
+    pieces: Pieces,
+    before: Array,
+    mass: Array,
+    rate: float,
+    deepest: float,
+    hidden_stays: bool,
+) -> tuple[Pieces, Array, Array]:
     tau = rate * mass
     if not (tau > THICKEST).any():
-        return pieces, before
+        return pieces, before, mass
     # 1. Into how many, and how many of those may show.
     parts = np.ceil(np.maximum(tau / THICKEST - SLACK, 1.0))
     left = (deepest - rate * before) * parts / np.maximum(tau, THICKEST)
+    if hidden_stays:
+        parts = np.where(left > 0.0, parts, 1.0)
     shown = np.maximum(np.minimum(parts, np.ceil(left)), 1.0).astype(np.intp)
-    parent = np.repeat(np.arange(len(tau)), shown)
-    number = np.arange(len(parent)) - np.repeat(np.cumsum(shown) - shown, shown)
+    count = shown + (hidden_stays & (shown < parts))
+    parent = np.repeat(np.arange(len(tau)), count)
+    number = np.arange(len(parent)) - np.repeat(np.cumsum(count) - count, count)
+    first = number / parts[parent]
+    last = np.where(number < shown[parent], (number + 1) / parts[parent], 1.0)
 
     # 2. Find where the column within the piece has each part behind it, by halving:
     # only in pieces that are more than one part.
@@ -65,8 +91,8 @@ def thinner(
     whole = taken(pieces, parent)
     thick = taken(whole, several)
     begin, end = np.zeros(len(parent)), np.ones(len(parent))
-    for k, found in ((number, begin), (number + 1, end)):
-        share = k[several] / parts[parent[several]]
+    for shares, found in ((first, begin), (last, end)):
+        share = shares[several]
         low, high = np.zeros(len(several)), np.ones(len(several))
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
@@ -76,11 +102,14 @@ def thinner(
             high = np.where(beyond, middle, high)
             low = np.where(beyond, low, middle)
         inner = np.where(share >= 1.0, 1.0, high)
-        found[several] = np.where(k[several] == 0, 0.0, inner)
+        found[several] = np.where(share == 0.0, 0.0, inner)
 
     # 3. Each part is a piece of its own.
-    columns_before = before[parent] + number / parts[parent] * mass[parent]
-    return part_of(whole, begin, np.maximum(end - begin, 0.0)), columns_before
+    return (
+        part_of(whole, begin, np.maximum(end - begin, 0.0)),
+        before[parent] + first * mass[parent],
+        (last - first) * mass[parent],
+    )
 
 
 def evenly(pieces: Pieces, before: Array, parts: Numbers) -> tuple[Pieces, Array]:

@@ -106,7 +106,7 @@ def planes(
 
 
 def looked_up(
-    volume: Planes, slab: NDArray[np.intp], u: Singles, v: Singles
+    volume: Planes, slab: NDArray[np.int32], u: Singles, v: Singles
 ) -> list[Singles]:
     """Interpolate every field of slabs at places, bilinearly.
 
@@ -117,23 +117,26 @@ def looked_up(
     slab
         Which one, shape (M,).
     u, v
-        Places in cells, shape (M,).
+        Places in cells, counted with the rim, shape (M,).
 
     Returns
     -------
     An array of shape (M,) for each field.
     """
     _, V, U = volume.shape
-    scale, moved = np.float32(volume.scale), np.float32(0.5 * volume.scale - 0.5 + RIM)
+    if volume.scale > 1:
+        # The rim is RIM samples wide at each scale; sample i lies at (i + 1/2) / scale.
+        scale = np.float32(volume.scale)
+        moved = np.float32(0.5 * (volume.scale - 1) - RIM * (volume.scale - 1))
+        u, v = u * scale + moved, v * scale + moved
     # int() truncates toward zero: the rim keeps what it sees positive.
-    x, y = u * scale + moved, v * scale + moved
-    for place, most in ((x, U - 1.5), (y, V - 1.5)):
-        np.maximum(place, np.float32(0.0), out=place)
-        np.minimum(place, np.float32(most), out=place)
-    i, j = x.astype(np.intp), y.astype(np.intp)
-    x -= i
-    y -= j
-    j += slab * V
+    x = np.clip(u, np.float32(0.0), np.float32(U - 1.5))
+    y = np.clip(v, np.float32(0.0), np.float32(V - 1.5))
+    i, row = x.astype(np.int32), y.astype(np.int32)
+    x -= i.astype(np.float32)
+    y -= row.astype(np.float32)
+    row += slab * np.int32(V)
+    j = row.astype(np.intp)  # samples may be more than 32 bits count
     j *= U
     j += i
     found = []

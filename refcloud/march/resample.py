@@ -87,3 +87,32 @@ def between(slabs: NDArray[Any], w: Array) -> Image:
     weight = share[:, None, None]
     mixed = (1.0 - weight) * slabs[near] + weight * slabs[far]
     return mixed.astype(np.float32, order="C")
+
+
+def without_bias(lit: Image, axes: tuple[int, ...] = (1, 2)) -> Image:
+    """Take from each sample a twelfth of its second differences along some axes.
+
+    Linear interpolation of f is off by x (1 - x) f'' / 2 at a share x between samples,
+    on average f'' / 12: light that curves upward comes out too bright. What is left has
+    a mean of 0. No light is made negative, or more than the sun's.
+
+    Parameters
+    ----------
+    lit
+        Light in [0, 1], shape (n, V, U).
+    axes
+        Along which it will be interpolated; v and u within a slice.
+
+    Returns
+    -------
+    The same shape.
+    """
+    better = lit.copy()
+    for axis in axes:
+        first, middle, last = ([slice(None)] * 3 for _ in range(3))
+        first[axis], middle[axis], last[axis] = slice(-2), slice(1, -1), slice(2, None)
+        second = lit[tuple(first)] + lit[tuple(last)]
+        second -= 2.0 * lit[tuple(middle)]
+        second *= np.float32(1.0 / 12.0)
+        better[tuple(middle)] -= second
+    return np.clip(better, 0.0, 1.0, out=better)

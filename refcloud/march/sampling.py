@@ -5,15 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from refcloud.camera import AnyCamera
 from refcloud.conventions import Array
+from refcloud.march.box import slabs
 from refcloud.march.quadrature import columns
 from refcloud.march.task import Task
 from refcloud.noise import uniform
 
 CHECKED = 256  # rays of the hashed sample
-DRAWN = 8 * CHECKED  # rays that are looked at for it; of fewer, each one
-EDGES = 64  # rays where a picture is steepest
+AT_ONCE = 2 * CHECKED  # rays that are looked at for it together
+# Rays that are looked at for it at most; of fewer, each one. A small cloud in a large
+# picture is met by few of them: then all that meet it are checked.
+DRAWN = 64 * CHECKED
+EDGES = 48  # rays where a picture is steepest
+LEVEL = 1e-6  # steps below it are taken together
 
 
 def chosen_rays(task: Task) -> NDArray[np.intp]:
@@ -23,27 +27,34 @@ def chosen_rays(task: Task) -> NDArray[np.intp]:
     if count > DRAWN:
         hashed = uniform(np.arange(DRAWN), seed=0) * count
         drawn = np.unique(hashed.astype(np.intp))
-    held = columns(task.grid, task.origins[drawn], task.directions[drawn])
-    drawn = drawn[held > 0.0]
-    order = np.argsort(uniform(drawn, seed=0), kind="stable")
-    return np.sort(drawn[order[:CHECKED]])
+    grid = task.grid
+    lower = grid.lower + (grid.first + 0.5) * grid.size
+    upper = grid.lower + (grid.last + 0.5) * grid.size
+    t0, t1 = slabs(task.origins[drawn], task.directions[drawn], lower, upper, 0.0)
+    drawn = drawn[t1 > t0]
+    drawn = drawn[np.argsort(uniform(drawn, seed=0), kind="stable")]
+    chosen = drawn[:0]
+    for start in range(0, len(drawn), AT_ONCE):
+        some = drawn[start : start + AT_ONCE]
+        held = columns(grid, task.origins[some], task.directions[some])
+        chosen = np.concatenate([chosen, some[held > 0.0]])
+        if len(chosen) >= CHECKED:
+            break
+    return np.sort(chosen[:CHECKED])
 
 
-def edge_rays(camera: AnyCamera, opacity: Array) -> NDArray[np.intp]:
-    """Choose the rays where a picture is steepest: an image's errors sit at edges.
+def edge_rays(picture: Array) -> NDArray[np.intp]:
+    """Choose the rays where a picture is steepest: errors sit at edges.
 
     Parameters
     ----------
-    camera
-        Whose rays they are.
-    opacity
-        What a march found along each ray, shape (N,).
+    picture
+        What a march found along each ray, shape (H, W), neighbours beside each other.
 
     Returns
     -------
     Numbers of rays, ascending: those with the largest steps to a neighbour.
     """
-    picture = opacity.reshape(camera.height, camera.width)
     steep = np.zeros_like(picture)
     for axis in (0, 1):
         step = np.abs(np.diff(picture, axis=axis))
@@ -51,5 +62,13 @@ def edge_rays(camera: AnyCamera, opacity: Array) -> NDArray[np.intp]:
         near[axis], far[axis] = slice(None, -1), slice(1, None)
         for side in (tuple(near), tuple(far)):
             steep[side] = np.maximum(steep[side], step)
-    order = np.argsort(-steep.ravel(), kind="stable")[:EDGES]
-    return np.sort(order[steep.ravel()[order] > 0.0])
+    steep = steep.ravel()
+    # Only those above a level are sorted, which is lowered until they are enough: a
+    # partition of as many zeros as lie beside a cloud takes fifty times as long.
+    level = 0.5 * float(steep.max(initial=0.0))
+    most = np.flatnonzero(steep > level)
+    while len(most) < EDGES and level > 0.0:
+        level = 0.5 * level if level > LEVEL else 0.0
+        most = np.flatnonzero(steep > level)
+    order = np.argsort(-steep[most], kind="stable")[:EDGES]
+    return np.sort(most[order])

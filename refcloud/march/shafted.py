@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array
+from refcloud.march.cubics import Smooth
 from refcloud.march.shafts import Shafts, shafts
 from refcloud.march.slices import single
 from refcloud.march.task import Task
@@ -51,16 +53,16 @@ def shafts_of(task: Task, cloud: VoxelGrid, finer: int) -> list[Shafts] | None:
 
 
 def shafted(
-    task: Task, tables: list[Shafts], points: int, least: float
+    task: Task, tables: Sequence[Shafts | Smooth], points: int, least: float
 ) -> tuple[Array, Array]:
-    """Integrate rays with their light from leaning lattices.
+    """Integrate rays with their light from tables that are read by cubics.
 
     Parameters
     ----------
     task
         N rays.
     tables
-        Of `shafts_of`, one for each sun.
+        One for each sun: of `shafts_of`, or light volumes.
     points
         Gauss points in each space between voxel centres.
     least

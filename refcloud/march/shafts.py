@@ -15,19 +15,17 @@ whose w axis is the sun's ray, and interpolated by Catmull-Rom: an error of thir
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array
+from refcloud.march.cubics import PLACES, RIM, read_cubics
 from refcloud.march.quadrature import gauss
 
-RIM = 2  # samples around the cloud: a cubic weighs two to each side
 STRETCH = 2  # Gauss points between two levels
 MOST = 1 << 25  # samples of one lattice: 128 MB
-PLACES = 1 << 15  # at a time: tables that stay in the cache
 
 
 @dataclass(frozen=True)
@@ -63,10 +61,10 @@ class Shafts:
         found = np.empty(len(points))
         for start in range(0, len(points), PLACES):
             part = slice(start, start + PLACES)
-            found[part] = self._some(points[part])
+            found[part] = read_cubics(self.table, self._places(points[part]))
         return found
 
-    def _some(self, points: Array) -> NDArray[Any]:
+    def _places(self, points: Array) -> list[Array]:
         # Where among the samples, in the leaning coordinates.
         w_axis, *across = self.axes
         cells = (points - self.lower) / self.size - 0.5
@@ -75,39 +73,10 @@ class Shafts:
             w,
             *(cells[:, k] - a * w for k, a in zip(across, self.lean, strict=True)),
         ]
-        base, weights = np.zeros(len(points), np.intp), []
-        for place, first, n in zip(leaning, self.begin, self.table.shape, strict=True):
-            place = (place - first) * self.finer
-            whole = np.clip(np.floor(place), 1, n - 3).astype(np.intp)
-            base = base * n + whole - 1
-            weights.append(catmull_rom((place - whole).astype(np.float32)))
-        _, V, U = self.table.shape
-        flat = self.table.reshape(-1)
-        total = np.zeros(len(points), np.float32)
-        for k, weight_w in enumerate(weights[0]):
-            plane = np.zeros(len(points), np.float32)
-            for j, weight_v in enumerate(weights[1]):
-                at = base + (k * V + j) * U
-                row = flat.take(at)
-                row *= weights[2][0]
-                for i in (1, 2, 3):
-                    at += 1
-                    row += flat.take(at) * weights[2][i]
-                row *= weight_v
-                plane += row
-            plane *= weight_w
-            total += plane
-        return np.maximum(total, np.float32(0.0))
-
-
-def catmull_rom(f: NDArray[np.float32]) -> list[NDArray[Any]]:
-    """Give the weights of four samples, for a share f of the way from the second."""
-    return [
-        f * (-0.5 + f * (1.0 - 0.5 * f)),
-        1.0 + f * f * (1.5 * f - 2.5),
-        f * (0.5 + f * (2.0 - 1.5 * f)),
-        f * f * (0.5 * f - 0.5),
-    ]
+        return [
+            (place - first) * self.finer
+            for place, first in zip(leaning, self.begin, strict=True)
+        ]
 
 
 def shafts(cloud: VoxelGrid, sun: Array, finer: int) -> Shafts | None:

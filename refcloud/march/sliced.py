@@ -33,9 +33,18 @@ class Slicing:
     finer: float
     scale: Literal[1, 2]
 
+    @property
+    def unbiased(self) -> bool:
+        """Whether light is freed of what linear interpolation adds on average.
+
+        Between samples half as far apart that is a quarter, and not worth a tenth of
+        the time.
+        """
+        return self.scale == 1
+
 
 # From coarse to fine; each takes two to three times as long as the one before. Largest
-# errors seen of a cloud of 128^3 in full sun: .009, .0035 and .0015 of white.
+# errors seen of a cloud of 128^3 in full sun: .009, .004 and .0013 of white.
 SLICINGS = (Slicing(1.25, 1), Slicing(2.0, 2), Slicing(3.0, 2))
 
 
@@ -73,7 +82,13 @@ def sliced(
     if sides_touched(cloud):
         return None
     found = march_slices(
-        cloud, camera, suns=suns, medium=medium, finer=slicing.finer, depths=depths
+        cloud,
+        camera,
+        suns=suns,
+        medium=medium,
+        finer=slicing.finer,
+        depths=depths,
+        unbiased=slicing.unbiased,
     )
     if found is None:
         return None

@@ -27,7 +27,7 @@ import numpy as np
 from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array
-from refcloud.march.resample import Image, between, resampled
+from refcloud.march.resample import Image, between, resampled, without_bias
 from refcloud.march.view import FINER, View, part_of, view_of
 from refcloud.march.warp import developed
 from refcloud.optics import Medium, Sun
@@ -71,7 +71,7 @@ def march_slices(
         A light volume for each sun, all of one scale; None makes them.
     unbiased
         Whether the light of a slice is corrected by what its linear interpolation adds
-        on average; see `without_bias`.
+        on average; see `refcloud.march.resample.without_bias`.
 
     Returns
     -------
@@ -160,24 +160,6 @@ def crossed(
                 light[n, c][window] += before * behind_each_other(sent, left)
             before *= left.prod(axis=0)
     return light, 1.0 - through
-
-
-def without_bias(lit: Image) -> Image:
-    """Take from each sample a twelfth of its second differences along v and along u.
-
-    Linear interpolation of f is off by x (1 - x) f'' / 2 at a share x between samples,
-    on average f'' / 12: light that curves upward comes out too bright. What is left has
-    a mean of 0. No light is made negative, or more than the sun's.
-    """
-    better = lit.copy()
-    for axis in (1, 2):
-        first, middle, last = ([slice(None)] * 3 for _ in range(3))
-        first[axis], middle[axis], last[axis] = slice(-2), slice(1, -1), slice(2, None)
-        second = lit[tuple(first)] + lit[tuple(last)]
-        second -= 2.0 * lit[tuple(middle)]
-        second *= np.float32(1.0 / 12.0)
-        better[tuple(middle)] -= second
-    return np.clip(better, 0.0, 1.0, out=better)
 
 
 def behind_each_other(sent: Image, left: Image) -> Image:

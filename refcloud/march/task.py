@@ -39,6 +39,8 @@ class Task:
         Whose rays they are, row by row; None for any rays.
     kept
         Light volumes of earlier calls.
+    shape
+        Leading axes of the caller's rays; () for a list.
     """
 
     cloud: VoxelGrid
@@ -53,6 +55,7 @@ class Task:
     background: Array | None
     camera: AnyCamera | None = None
     kept: tuple[LightVolume, ...] = ()
+    shape: tuple[int, ...] = ()
 
     def taken(self, which: NDArray[np.intp]) -> Task:
         """Keep some rays."""
@@ -69,6 +72,15 @@ class Task:
             self.ambient,
             behind,
         )
+
+    @property
+    def rows(self) -> tuple[int, int]:
+        """Tell which rays are neighbours: rows and columns; one row for a list."""
+        if self.camera is not None:
+            return self.camera.height, self.camera.width
+        count = len(self.origins)
+        columns = self.shape[-1] if self.shape and count else count
+        return (count // columns if columns else 0), columns
 
     @property
     def brightest(self) -> float:

@@ -237,17 +237,20 @@ def lit_points(
     a: float,
     b: float,
     sun: Sun,
-    rate: float,
+    rates: Sequence[float],
 ) -> list[tuple[Point, float, float]]:
     """Place Gauss points on a piece, in more parts where a sun's depth changes much."""
     rule = gauss4()
-    tau = [
-        rate * column(cloud, along(origin, (a + x * (b - a), direction)), sun.direction)
+    far = [
+        column(cloud, along(origin, (a + x * (b - a), direction)), sun.direction)
         for x, _ in rule
     ]
-    change = min(max(tau) - min(tau), max(41.0 - min(tau), 0.0))
     between_outermost = max(x for x, _ in rule) - min(x for x, _ in rule)
-    count = max(math.ceil(change / between_outermost - SLACK), 1)
+    count = 1
+    for rate in rates:
+        low, high = rate * min(far), rate * max(far)
+        change = min(high - low, max(41.0 - low, 0.0))
+        count = max(count, math.ceil(change / between_outermost - SLACK))
     found = []
     for part in range(count):
         for x, weight in rule:
@@ -279,9 +282,10 @@ def integrate(
         for a, b in following(ends):
             for sun in suns:
                 light = sources(sun, medium, direction)
-                rate = mixing.light_absorption_toward_sun * max(medium.sigma_t)
+                toward = mixing.light_absorption_toward_sun
+                rates = [toward * sigma_t for sigma_t in medium.sigma_t]
                 for p, x, weight in lit_points(
-                    cloud, origin, direction, a, b, sun, rate
+                    cloud, origin, direction, a, b, sun, rates
                 ):
                     near = passed + stretch(cloud, origin, direction, a, x)
                     far = column(cloud, p, sun.direction)

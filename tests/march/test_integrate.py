@@ -39,6 +39,15 @@ def test_a_slab_lit_from_the_eye_and_from_behind(power) -> None:
         assert seen[0] == pytest.approx(T, rel=1e-12 * max(tau, 1.0), abs=1e-300)
 
 
+@pytest.mark.parametrize("sigmas", [[0.1, 0.1, 300.0], [0.01, 3.0, 1e6], [0, 1, 80]])
+def test_an_opaque_channel_hides_nothing_of_clear_ones(sigmas) -> None:
+    medium = Medium(sigmas, phase="isotropic")
+    tau = 2.0 * np.array(sigmas)
+    for z, expected in ((1, -np.expm1(-2.0 * tau) / 2.0), (-1, tau * np.exp(-tau))):
+        L, _ = integrate(SLAB, *INWARD, suns=Sun([0, 0, z]), medium=medium)
+        np.testing.assert_allclose(L[0], expected, rtol=1e-9, atol=1e-13)
+
+
 @pytest.mark.parametrize("tau", ["1e-7", "1e-5", "0.01"])
 def test_thin_haze_keeps_its_digits(tau) -> None:
     with localcontext() as context:

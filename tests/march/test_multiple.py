@@ -11,6 +11,9 @@ from small_lights import FORWARD, SUN, ball, cloud
 import refcloud as rc
 from refcloud.camera import OrthographicCamera, rays
 from refcloud.march import integrate
+from refcloud.march.cells import lattice
+from refcloud.march.glow import _between_centres
+from refcloud.march.quadrature import columns
 from refcloud.metaballs import voxel_balls
 from refcloud.optics import Medium, Sun
 from refcloud.transport import Plan, Stage, scattered_light, trace_paths
@@ -26,6 +29,14 @@ def view(n: int, toward=(0.2, 0.1, 1.0)) -> tuple[np.ndarray, np.ndarray]:
     )
     origins, directions = rays(camera)
     return origins.reshape(-1, 3), directions.reshape(-1, 3)
+
+
+def test_samples_of_clear_channels_reach_behind_opaque_fronts() -> None:
+    origins, ways = view(6)
+    grid = lattice(cloud())
+    samples = _between_centres(grid, origins, ways, np.array([0.01, 3.0, 1e4]))
+    found = np.bincount(samples.ray, samples.mass, minlength=len(origins))
+    np.testing.assert_allclose(found, columns(grid, origins, ways), rtol=1e-9)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 0.05])

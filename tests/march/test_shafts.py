@@ -14,9 +14,9 @@ from twins.march import directions
 from refcloud.camera import Camera, rays
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import unit_vector
-from refcloud.march import certified, integrate, shafts
+from refcloud.march import integrate, shafts, sharp
+from refcloud.march.cubics import catmull_rom
 from refcloud.march.shafted import SHAFTINGS
-from refcloud.march.shafts import catmull_rom
 from refcloud.optics import Sun
 from refcloud.transport import column_density
 
@@ -82,7 +82,9 @@ def test_a_sharp_cloud_is_marched_by_leaning_light_within_the_tolerance() -> Non
     assert all(2.0 * error > tolerance for error in errors[:-1])
     (row,) = seen["skipped"]
     assert row.what == "exact columns to the suns"
-    assert (row.skipped, row.bound) == (row.of, 2.0 * errors[-1])
+    assert row.skipped == row.of
+    # Of the checked rays, or of the steepest.
+    assert 2.0 * errors[-1] <= row.bound <= tolerance
 
 
 def test_what_leaning_lattices_cannot_hold_is_exact(monkeypatch) -> None:
@@ -90,7 +92,7 @@ def test_what_leaning_lattices_cannot_hold_is_exact(monkeypatch) -> None:
     exact, _ = integrate(SHARP, *rays(EYE), **how)
     for module, name, value in (
         (shafts, "MOST", 10),
-        (certified, "SHAFTINGS", SHAFTINGS[:0]),
+        (sharp, "SHAFTINGS", SHAFTINGS[:0]),
     ):
         with monkeypatch.context() as context:
             context.setattr(module, name, value)

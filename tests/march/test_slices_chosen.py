@@ -41,12 +41,28 @@ def test_what_slices_do_not_hold_is_marched_by_rays() -> None:
 
 
 def test_the_steepest_rays_are_those_beside_a_step() -> None:
-    camera = Camera([0, 0, 5], [0, 0, 0], width=9, height=5)
     opacity = np.zeros((5, 9))
     opacity[2, 4:] = 1.0
-    found = {divmod(int(k), 9) for k in edge_rays(camera, opacity.reshape(-1))}
+    found = {divmod(int(k), 9) for k in edge_rays(opacity)}
     beside = {(2, c) for c in range(3, 9)} | {
         (r, c) for r in (1, 3) for c in range(4, 9)
     }
     assert found == beside
-    assert not len(edge_rays(camera, np.zeros(45))), "no step, no edge"
+    assert not len(edge_rays(np.zeros((5, 9)))), "no step, no edge"
+
+
+def test_of_many_steep_rays_the_steepest_are_taken() -> None:
+    opacity = np.cumsum(np.arange(200.0)[::-1]).reshape(1, 200)
+    found = edge_rays(opacity)
+    assert found.tolist() == list(range(48)), "the steps fall along the row"
+    rows = np.cumsum(np.arange(200.0)[::-1]).reshape(200, 1)
+    assert edge_rays(rows).tolist() == found.tolist()
+
+
+def test_a_bright_spot_of_few_rays_is_checked() -> None:
+    """A narrow lobe behind a thick part: opacity changes little where light does."""
+    medium = Medium(6.0, 1.0, 0.9, "hg")
+    how = {**HOW, "suns": Sun([-1.5, -1.0, -3.2]), "medium": medium}
+    exact = render(cloud(24, filled=True), **how)
+    found = render(cloud(24, filled=True), **how, tolerance=0.1)
+    assert np.abs(found.linear - exact.linear).max() <= 0.1

@@ -192,8 +192,9 @@ def test_a_look_up_between_samples_is_trilinear_where_w_is_level() -> None:
     cloud = VoxelGrid(level, [0, 0, 0], [13, 12, 4])
     volume = planes([level, 2.0 * level], np.arange(-0.5, 4.0), scale=1, thickness=1.0)
     u, v = np.array([0.3, 5.7, 11.99]), np.array([10.2, 3.0, 0.4])
+    slab = np.array([0, 2, 3], np.int32)
     one, two = looked_up(
-        volume, np.array([0, 2, 3]), u.astype(np.float32), v.astype(np.float32)
+        volume, slab, (u + RIM).astype(np.float32), (v + RIM).astype(np.float32)
     )
     points = np.stack([u + 0.5, v + 0.5, np.full(3, 2.0)], axis=1)
     np.testing.assert_allclose(one, trilinear(cloud, points), atol=1e-5)

@@ -10,7 +10,8 @@ from small_marches import BLOB, relative_error
 from refcloud.camera import Camera, rays
 from refcloud.cloudmap import VoxelGrid
 from refcloud.march import integrate
-from refcloud.march.slices import march_slices, without_bias
+from refcloud.march.resample import without_bias
+from refcloud.march.slices import march_slices
 from refcloud.optics import Medium, Sun
 
 INNER = VoxelGrid(np.pad(BLOB.density, 2), [-1.4, -1.3, -1.4], [1.4, 1.3, 1.4])
