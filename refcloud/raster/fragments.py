@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from refcloud.checking import check_fields, checked
 from refcloud.conventions import Array, Range, Shape
 from refcloud.raster.blending import blended_as
 from refcloud.raster.factors import Blending
-from refcloud.raster.formats import stored
+from refcloud.raster.formats import Arithmetic, Format, stored
 from refcloud.raster.framebuffer import (
     CHANNELS,
     Framebuffer,
@@ -146,53 +146,84 @@ def draw_fragments(
     )
     source, depths = source[inner], depths[inner]
 
-    write(buffer, box, source, depths, state)
+    write(stored_in(buffer), box, source, depths, state)
+
+
+class Store(NamedTuple):
+    """A framebuffer's numbers, in whatever shape they are written in."""
+
+    pixels: Array
+    depth: Array | None
+    format: Format
+    arithmetic: Arithmetic
+
+
+def stored_in(buffer: Framebuffer) -> Store:
+    """Give a framebuffer's numbers as they lie there."""
+    return Store(buffer.pixels, buffer.depth, buffer.format, buffer.arithmetic)
+
+
+def flattened(buffer: Framebuffer) -> Store:
+    """Give a framebuffer as lists of pixels (H W, 4) and depths (H W,).
+
+    Views where its memory allows that; it does in those that `framebuffer` makes.
+    """
+    depth = None if buffer.depth is None else buffer.depth.reshape(-1)
+    pixels = buffer.pixels.reshape(-1, CHANNELS)
+    return Store(pixels, depth, buffer.format, buffer.arithmetic)
+
+
+def unflattened(store: Store, buffer: Framebuffer) -> None:
+    """Put lists of pixels and depths back where they are no views."""
+    for numbers, whole in ((store.pixels, buffer.pixels), (store.depth, buffer.depth)):
+        if numbers is not None and whole is not None:
+            if not np.may_share_memory(numbers, whole):
+                whole[:] = numbers.reshape(whole.shape)
 
 
 def write(
-    buffer: Framebuffer,
-    where: tuple[Any, Any],
+    store: Store,
+    where: tuple[Any, ...],
     source: Array,
-    depths: Array,
+    depths: Array | None,
     state: State,
 ) -> None:
     """Send fragments that lie within the scissor to their pixels, unchecked.
 
     Parameters
     ----------
-    buffer
-        The framebuffer, written in place.
+    store
+        The framebuffer's numbers, written in place.
     where
-        Rows and columns: two slices, or two lists in which no pixel comes twice.
+        Their places: slices, or lists in which no pixel comes twice.
     source
         Colours, shape (h, w, 4) or (n, 4).
     depths
-        Shape (h, w) or (n,).
+        Shape (h, w) or (n,); None where the state tests none.
     state
         The operations that are on.
     """
     # 2. Depth test, and the depths of those that pass.
     passed = None
-    if state.depth_func is not None and buffer.depth is not None:
-        before = buffer.depth[where]
+    if state.depth_func is not None and store.depth is not None:
+        before = store.depth[where]
         passed = DEPTH_FUNCS[state.depth_func](depths, before)
         if state.depth_mask:
-            buffer.depth[where] = np.where(passed, depths, before)
+            store.depth[where] = np.where(passed, depths, before)
 
     # 3. Blend, and round to what the format holds.
-    pixels = buffer.pixels[where]
     if state.blending is None:
-        colors = stored(source, buffer.format, arithmetic=buffer.arithmetic)
+        colors = stored(source, store.format, arithmetic=store.arithmetic)
     else:
-        how = buffer.format, buffer.arithmetic
-        colors = blended_as(source, pixels, state.blending, *how)
+        how = store.format, store.arithmetic
+        colors = blended_as(source, store.pixels[where], state.blending, *how)
 
     # 4. Write, channel by channel.
     for channel in _written(state):
-        new = colors[..., channel]
+        new, place = colors[..., channel], (*where, channel)
         if passed is not None:
-            new = np.where(passed, new, pixels[..., channel])
-        buffer.pixels[(*where, channel)] = new
+            new = np.where(passed, new, store.pixels[place])
+        store.pixels[place] = new
 
 
 @checked

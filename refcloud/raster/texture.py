@@ -116,18 +116,26 @@ class Texture:
         return mip_levels(first)
 
     @functools.cached_property
-    def tables(self) -> tuple[Array, ...]:
-        """Give the levels with a border of one texel around, by `wrap`.
+    def tables(self) -> dict[str, list[Array]]:
+        """Give the levels as they are looked up, channels first, by kind of float.
 
-        A lookup of two neighbours then needs no care at edges.
+        Each has a border of one texel around, by `wrap`: a lookup of two neighbours
+        then needs no care at edges.
         """
-        return tuple(self._bordered(level) for level in self.levels)
+        exact = [self._bordered(np.moveaxis(level, -1, 0)) for level in self.levels]
+        return {"f8": exact, "f4": [table.astype("f4") for table in exact]}
 
     def _bordered(self, level: Array) -> Array:
-        for axis, wrap in enumerate(reversed(self.wraps)):
-            width = [(int(k == axis),) * 2 for k in range(level.ndim)]
+        for axis, wrap in zip((-1, -2, -3), self.wraps, strict=False):
+            width = [(0, 0)] * level.ndim
+            width[axis] = 1, 1
             level = np.pad(level, width, BORDER[wrap])  # type: ignore[call-overload]
-        return level
+        return np.ascontiguousarray(level, np.float64)
+
+    @functools.cached_property
+    def largest(self) -> float:
+        """Give the largest number in it, whatever its sign."""
+        return max(float(np.abs(table).max()) for table in self.tables["f8"])
 
 
 @checked
@@ -191,7 +199,7 @@ def sample(
             texture, along_x.reshape(-1, k).T, along_y.reshape(-1, k).T
         )
     found = looked_up(texture, transformed(texture, columns), levels)
-    return found.reshape(*leading, -1)
+    return np.moveaxis(found, 0, -1).reshape(*leading, -1)
 
 
 def transformed(texture: Texture, coords: Array, way: bool = False) -> Array:
@@ -240,7 +248,9 @@ def level_of_detail(texture: Texture, along_x: Array, along_y: Array) -> Array:
     return np.log2(np.maximum(np.maximum(wide, high), LEAST))
 
 
-def looked_up(texture: Texture, coords: Array, levels: Array | None) -> Array:
+def looked_up(
+    texture: Texture, coords: Array, levels: Array | None, kind: str = "f8"
+) -> Array:
     """Look up by the filter that each level of detail asks for, unchecked.
 
     Parameters
@@ -251,43 +261,42 @@ def looked_up(texture: Texture, coords: Array, levels: Array | None) -> Array:
         After the matrix, shape (d, n).
     levels
         log2 of texels to a pixel, shape (n,); None magnifies.
+    kind
+        f8, or f4 for texels and their mixing in float32.
 
     Returns
     -------
-    Shape (n, C).
+    Shape (C, n).
     """
     mag, (minify, *mipmap) = texture.mag_filter, texture.min_filter.split("_MIPMAP_")
     between = mipmap[0] if mipmap else None
     if levels is None or (between is None and minify == mag):
-        return at_level(texture, 0, mag, coords)
+        return at_level(texture, 0, mag, coords, kind)
     # 1. Which filter: the limit is half a level where a sharp level would follow.
     limit = 0.5 if mag == "LINEAR" and minify == "NEAREST" and between else 0.0
     smaller = levels > limit
     # 2. Which level, and which share of the next smaller one.
-    lower, share = np.zeros(len(levels), np.int64), np.zeros(len(levels))
-    if between:
-        last = float(len(texture.tables) - 1)
-        held = np.clip(levels, 0.0, last)
-        lower = (np.ceil(held + 0.5) - 1.0 if between == "NEAREST" else held).astype(
-            np.int64
-        )
-        lower = np.minimum(lower, int(last))
-        share = held - lower if between == "LINEAR" else share
+    held = np.clip(levels, 0.0, float(len(texture.levels) - 1) if between else 0.0)
+    lower = np.ceil(held + 0.5) - 1.0 if between == "NEAREST" else np.floor(held)
+    share = held - lower if between == "LINEAR" else np.zeros_like(held)
     # 3. All of one level at a time.
-    found = np.empty((len(levels), texture.texels.shape[-1]))
+    found = np.empty((texture.texels.shape[-1], len(levels)), kind)
     large = np.flatnonzero(~smaller)
-    found[large] = at_level(texture, 0, mag, coords[:, large])
-    for level in np.unique(lower[smaller]):
+    found[:, large] = at_level(texture, 0, mag, coords[:, large], kind)
+    for level in np.unique(lower[smaller]).astype(int):
         here = np.flatnonzero(smaller & (lower == level))
-        found[here] = at_level(texture, level, minify, coords[:, here])
+        found[:, here] = at_level(texture, level, minify, coords[:, here], kind)
         here = here[share[here] > 0.0]
         if here.size:
-            next_one = at_level(texture, level + 1, minify, coords[:, here])
-            found[here] += share[here, None] * (next_one - found[here])
+            smaller_one = at_level(texture, level + 1, minify, coords[:, here], kind)
+            mixed = found[:, here]
+            found[:, here] = mixed + share[here].astype(kind) * (smaller_one - mixed)
     return found
 
 
-def at_level(texture: Texture, level: int, filter: str, coords: Array) -> Array:
+def at_level(
+    texture: Texture, level: int, filter: str, coords: Array, kind: str
+) -> Array:
     """Look up within one level.
 
     Parameters
@@ -300,50 +309,51 @@ def at_level(texture: Texture, level: int, filter: str, coords: Array) -> Array:
         NEAREST or LINEAR.
     coords
         Shape (d, n).
+    kind
+        f8 or f4.
 
     Returns
     -------
-    Shape (n, C).
+    Shape (C, n).
     """
-    table = texture.tables[level]
-    flat = table.reshape(-1, table.shape[-1])
+    table = texture.tables[kind][level]
+    flat = table.reshape(table.shape[0], -1)
     # 1. Into [0, 1], then to texels; the border makes up for one texel beyond.
-    base = np.zeros(coords.shape[1], np.int64)
-    stride, strides, shares = 1, [], []
+    place, strides, shares = 0, [], []
     for a, wrap in enumerate(texture.wraps):
-        size = table.shape[-2 - a]
-        x = within_one(coords[a], wrap) * (size - 2)
-        if filter == "LINEAR":
-            x = x + 0.5
-            whole = np.floor(x)
-            shares.append((x - whole)[:, None])
-            base += stride * whole.astype(np.int64)
-        else:
-            base += stride * (np.floor(x) + 1.0).astype(np.int64)
+        size, stride = table.shape[-1 - a], int(np.prod(table.shape[table.ndim - a :]))
+        x = within_one(coords[a], wrap)
+        x *= size - 2
+        x += 1.0 if filter == "NEAREST" else 0.5
+        whole = np.floor(x)
+        x -= whole
+        shares.append(x.astype(kind, copy=False))
         strides.append(stride)
-        stride *= size
+        whole *= stride
+        place = whole + place
+    index = np.asarray(place).astype(np.intp)
     # 2. Mix the corners, first along s, then along t, then along r.
     if filter == "NEAREST":
-        return flat.take(base, axis=0)
-    return _mixed(flat, base, strides, shares)
+        return flat.take(index, axis=1)
+    return _mixed(flat, index, strides, shares)
 
 
-def _mixed(flat: Array, base: NDArray[np.int64], strides: list, shares: list) -> Array:
+def _mixed(
+    flat: Array, index: NDArray[np.intp], strides: list[int], shares: list[Array]
+) -> Array:
     """Interpolate between a texel and its neighbours along each axis."""
     if not strides:
-        return flat.take(base, axis=0)
-    *strides, stride = strides
-    *shares, share = shares
-    low = _mixed(flat, base, strides, shares)
-    high = _mixed(flat, base + stride, strides, shares)
+        return flat.take(index, axis=1)
+    low = _mixed(flat, index, strides[:-1], shares[:-1])
+    high = _mixed(flat, index + strides[-1], strides[:-1], shares[:-1])
     high -= low
-    high *= share
+    high *= shares[-1]
     high += low
     return high
 
 
 def within_one(coords: Array, wrap: str) -> Array:
-    """Bring a coordinate into [0, 1] as a texture repeats, mirrors or ends."""
+    """Bring a coordinate into [0, 1] as a texture repeats, mirrors or ends; a copy."""
     if wrap == "CLAMP_TO_EDGE":
         return np.clip(coords, 0.0, 1.0)
     if wrap == "REPEAT":
