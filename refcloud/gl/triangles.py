@@ -21,7 +21,7 @@ from refcloud.gl.state import DEPTH_TEST, set_state
 from refcloud.gl.target import Target
 from refcloud.raster import Mesh, State, Texture, Textured
 from refcloud.raster.fragments import PLAIN
-from refcloud.raster.texture import transformed
+from refcloud.raster.lookup import transformed
 from refcloud.raster.window import NEAR, scale_of, to_camera
 
 ENUMS = {

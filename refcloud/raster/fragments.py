@@ -6,76 +6,21 @@ in OpenGL's order. `clear` takes the same state, of which it honours scissor and
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated
 
 import numpy as np
 
-from refcloud.checking import check_fields, checked
+from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Shape
-from refcloud.raster.blending import blended_as
-from refcloud.raster.factors import Blending
-from refcloud.raster.formats import Arithmetic, Format, stored
+from refcloud.raster.formats import stored
 from refcloud.raster.framebuffer import (
-    CHANNELS,
     Framebuffer,
     Rgba,
     clipped,
     refuse_other_box,
     within,
 )
-
-DepthFunc = Literal[
-    "NEVER", "LESS", "EQUAL", "LEQUAL", "GREATER", "NOTEQUAL", "GEQUAL", "ALWAYS"
-]
-ColorMask = tuple[bool, bool, bool, bool]
-EVERY_CHANNEL: ColorMask = (True, True, True, True)
-
-# Whether a fragment passes: of (its depth, the buffer's).
-DEPTH_FUNCS: dict[str, Callable[[Any, Any], Any]] = {
-    "NEVER": lambda new, old: np.zeros_like(old, dtype=bool),
-    "LESS": lambda new, old: new < old,
-    "EQUAL": lambda new, old: new == old,
-    "LEQUAL": lambda new, old: new <= old,
-    "GREATER": lambda new, old: new > old,
-    "NOTEQUAL": lambda new, old: new != old,
-    "GEQUAL": lambda new, old: new >= old,
-    "ALWAYS": lambda new, old: np.ones_like(old, dtype=bool),
-}
-
-
-@dataclass(frozen=True)
-class State:
-    """Which operations fragments go through; all are off by default.
-
-    Attributes
-    ----------
-    blending
-        Factors and equations; None writes the new colour (glDisable of BLEND).
-    color_mask
-        Which of RGBA may be written (glColorMask).
-    scissor
-        Rows and columns outside which nothing is written, as slices with both ends;
-        they may leave the buffer (glScissor). None for everywhere.
-    depth_func
-        Which depths pass against the buffer's (glDepthFunc); None neither tests nor
-        writes depths (glDisable of DEPTH_TEST).
-    depth_mask
-        Whether depths may be written (glDepthMask).
-    """
-
-    blending: Blending | None = None
-    color_mask: ColorMask = EVERY_CHANNEL
-    scissor: tuple[slice, slice] | None = None
-    depth_func: DepthFunc | None = None
-    depth_mask: bool = True
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-        for part in self.scissor or ():
-            clipped("scissor", part, 1)
-
+from refcloud.raster.store import State, stored_in, write, written
 
 PLAIN = State()
 DepthOf = (
@@ -149,83 +94,6 @@ def draw_fragments(
     write(stored_in(buffer), box, source, depths, state)
 
 
-class Store(NamedTuple):
-    """A framebuffer's numbers, in whatever shape they are written in."""
-
-    pixels: Array
-    depth: Array | None
-    format: Format
-    arithmetic: Arithmetic
-
-
-def stored_in(buffer: Framebuffer) -> Store:
-    """Give a framebuffer's numbers as they lie there."""
-    return Store(buffer.pixels, buffer.depth, buffer.format, buffer.arithmetic)
-
-
-def flattened(buffer: Framebuffer) -> Store:
-    """Give a framebuffer as lists of pixels (H W, 4) and depths (H W,).
-
-    Views where its memory allows that; it does in those that `framebuffer` makes.
-    """
-    depth = None if buffer.depth is None else buffer.depth.reshape(-1)
-    pixels = buffer.pixels.reshape(-1, CHANNELS)
-    return Store(pixels, depth, buffer.format, buffer.arithmetic)
-
-
-def unflattened(store: Store, buffer: Framebuffer) -> None:
-    """Put lists of pixels and depths back where they are no views."""
-    for numbers, whole in ((store.pixels, buffer.pixels), (store.depth, buffer.depth)):
-        if numbers is not None and whole is not None:
-            if not np.may_share_memory(numbers, whole):
-                whole[:] = numbers.reshape(whole.shape)
-
-
-def write(
-    store: Store,
-    where: tuple[Any, ...],
-    source: Array,
-    depths: Array | None,
-    state: State,
-) -> None:
-    """Send fragments that lie within the scissor to their pixels, unchecked.
-
-    Parameters
-    ----------
-    store
-        The framebuffer's numbers, written in place.
-    where
-        Their places: slices, or lists in which no pixel comes twice.
-    source
-        Colours, shape (h, w, 4) or (n, 4).
-    depths
-        Shape (h, w) or (n,); None where the state tests none.
-    state
-        The operations that are on.
-    """
-    # 2. Depth test, and the depths of those that pass.
-    passed = None
-    if state.depth_func is not None and store.depth is not None:
-        before = store.depth[where]
-        passed = DEPTH_FUNCS[state.depth_func](depths, before)
-        if state.depth_mask:
-            store.depth[where] = np.where(passed, depths, before)
-
-    # 3. Blend, and round to what the format holds.
-    if state.blending is None:
-        colors = stored(source, store.format, arithmetic=store.arithmetic)
-    else:
-        how = store.format, store.arithmetic
-        colors = blended_as(source, store.pixels[where], state.blending, *how)
-
-    # 4. Write, channel by channel.
-    for channel in _written(state):
-        new, place = colors[..., channel], (*where, channel)
-        if passed is not None:
-            new = np.where(passed, new, store.pixels[place])
-        store.pixels[place] = new
-
-
 @checked
 def clear(
     buffer: Framebuffer,
@@ -268,7 +136,7 @@ def clear(
     box = scissored(state, slice(0, height), slice(0, width), height, width)
     if color is not None:
         kept = stored(color, buffer.format, arithmetic=buffer.arithmetic)
-        for channel in _written(state):
+        for channel in written(state):
             buffer.pixels[(*box, channel)] = kept[channel]
     if depth is not None and buffer.depth is not None and state.depth_mask:
         buffer.depth[box] = depth
@@ -305,8 +173,3 @@ def _common(one: slice, other: slice) -> slice:
     """Give what two slices share; an empty one where that is nothing."""
     first = max(one.start, other.start)
     return slice(first, max(first, min(one.stop, other.stop)))
-
-
-def _written(state: State) -> list[int]:
-    """List the channels that the colour mask lets by."""
-    return [channel for channel in range(CHANNELS) if state.color_mask[channel]]

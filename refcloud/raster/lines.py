@@ -23,9 +23,9 @@ from refcloud.camera import Camera, OrthographicCamera
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Shape
 from refcloud.raster.factors import Blending, Factor
-from refcloud.raster.fragments import State, stored_in, write
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer, Rgba, Size
 from refcloud.raster.meshes import WORLD
+from refcloud.raster.store import State, stored_in, write
 from refcloud.raster.window import (
     NEAR,
     SUBPIXEL,

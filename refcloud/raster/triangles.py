@@ -16,18 +16,13 @@ from refcloud.camera import AnyCamera, Camera, OrthographicCamera
 from refcloud.checking import check, check_fields, checked, complaint
 from refcloud.conventions import Array, Range, Shape, Tolerance
 from refcloud.raster.clipping import clip
-from refcloud.raster.fragments import (
-    PLAIN,
-    State,
-    flattened,
-    scissored,
-    unflattened,
-    write,
-)
+from refcloud.raster.fragments import PLAIN, scissored
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer, Rgba
+from refcloud.raster.lookup import level_of_detail, looked_up, transformed
 from refcloud.raster.meshes import Mesh
 from refcloud.raster.spans import area_of, row_spans
-from refcloud.raster.texture import Texture, level_of_detail, looked_up, transformed
+from refcloud.raster.store import State, flattened, unflattened, write
+from refcloud.raster.texture import Texture
 from refcloud.raster.varying import Fragments, Run, View, planes_through
 from refcloud.raster.visible import layers, pieces
 from refcloud.raster.window import (
@@ -82,11 +77,13 @@ class Textured:
             ways = fragments.along_x[part], fragments.along_y[part]
             levels = level_of_detail(texture, *ways)
         coords = transformed(texture, fragments.values[part])
-        color = np.zeros((CHANNELS, coords.shape[1]))
-        color[3] = 1.0
         texels = looked_up(texture, coords, levels, kind)
-        np.multiply(texels, self.color[: len(texels), None], out=color[: len(texels)])
-        color[len(texels) :] *= self.color[len(texels) :, None]
+        color = np.empty((CHANNELS, coords.shape[1]))
+        for channel, share in enumerate(self.color):
+            there = channel < len(texels)
+            np.multiply(
+                texels[channel] if there else channel == 3, share, color[channel]
+            )
         return color.T
 
 

@@ -161,7 +161,11 @@ class Fragments:
 
     def of(self, some: Indices | slice) -> Fragments:
         """Give some of them."""
-        return Fragments(self.run, self.span[some], self.column[some], self.tolerance)
+        part = Fragments(self.run, self.span[some], self.column[some], self.tolerance)
+        for known in ("_first", "_across"):  # where the depth test has asked for them
+            if known in self.__dict__:
+                part.__dict__[known] = self.__dict__[known][some]
+        return part
 
     @property
     def row(self) -> Indices:
@@ -208,6 +212,10 @@ class Fragments:
         return self._change(self.run.planes.along_y.take(piece, axis=1))
 
     @functools.cached_property
+    def _across(self) -> Array:
+        return self.column.astype(np.float64)
+
+    @functools.cached_property
     def _first(self) -> Array:
         found = self._linear(0)
         return np.maximum(found, self.run.least, out=found)
@@ -215,7 +223,7 @@ class Fragments:
     def _linear(self, k: int) -> Array:
         """Evaluate a plane at the pixels' centres."""
         found = self.run.step[k].take(self.span)
-        found *= self.column
+        found *= self._across
         found += self.run.start[k].take(self.span)
         return found
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
-from refcloud.raster.fragments import State, Store
+from refcloud.raster.store import State, Store
 from refcloud.raster.varying import Fragments
 
 Indices = NDArray[np.int64]
@@ -67,11 +67,10 @@ def _nearest(store: Store, state: State, pixel: Indices, depth: Array) -> Some:
     assert store.depth is not None
     before = store.depth.copy()
     np.minimum.at(store.depth, pixel, depth)
-    shows = depth == store.depth.take(pixel)
-    if state.depth_func == "LESS":
-        shows &= depth < before.take(pixel)
-    seen = np.flatnonzero(shows)
+    seen = np.flatnonzero(depth == store.depth.take(pixel))
     if len(seen) > np.count_nonzero(store.depth < before):  # equal depths, or old ones
+        if state.depth_func == "LESS":
+            seen = seen[depth[seen] < before[pixel[seen]]]
         order = seen[::-1] if state.depth_func == "LESS" else seen
         seen = np.sort(order[_last(pixel[order], np.arange(len(order)), len(before))])
     return seen if len(seen) < len(pixel) else slice(0, len(pixel))
