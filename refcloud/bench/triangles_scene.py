@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
+from typing import Literal
 
 import numpy as np
 
@@ -17,10 +18,12 @@ from refcloud.raster import (
     State,
     Texture,
     Textured,
+    clear,
     dome_mesh,
     framebuffer,
     sphere_mesh,
 )
+from refcloud.raster.framebuffer import NOTHING
 
 WIDTH, HEIGHT = 1024, 768
 SIDE, BLOCK = 512, 4  # texels
@@ -30,7 +33,7 @@ UNDER = Camera(np.array([0.0, 0.1, 0.0]), np.array([0.0, 0.6, -1.0]), fov_y=1.2)
 
 
 @functools.cache
-def scene(name: str, count: int) -> tuple[Mesh, Camera, str | None]:
+def scene(name: str, count: int) -> tuple[Mesh, Camera, Literal["BACK"] | None]:
     """Give a mesh of about so many triangles, an eye, and what is culled."""
     side = max(3, round(math.sqrt(0.5 * count)))
     if name == "dome":
@@ -57,9 +60,17 @@ def state(depth: bool) -> State:
     return State(depth_func="LESS" if depth else None)
 
 
-def cleared(depth: bool) -> Framebuffer:
-    """Make a framebuffer, as every frame does."""
+@functools.cache
+def target(depth: bool) -> Framebuffer:
+    """Make a framebuffer once, as OpenGL's is made."""
     return framebuffer(WIDTH, HEIGHT, depth=1.0 if depth else None)
+
+
+def cleared(depth: bool) -> Framebuffer:
+    """Clear it, as every frame does."""
+    buffer = target(depth)
+    clear(buffer, NOTHING, depth=1.0)
+    return buffer
 
 
 def mean_difference(found: Array, exact: Array) -> float:
