@@ -17,7 +17,7 @@ from refcloud.lighting.octaves import (
 )
 from refcloud.lighting.order import depth_order
 from refcloud.lighting.shining import march_shining
-from refcloud.lighting.solved import lit_by_solution
+from refcloud.lighting.solved import lit_by_solution, solved_light
 from refcloud.lighting.sunward import sunward
 
 __all__ = [
@@ -44,5 +44,6 @@ __all__ = [
     "octave_march",
     "octave_source",
     "sky_source",
+    "solved_light",
     "sunward",
 ]

@@ -76,7 +76,7 @@ def boxed(
     """Draw the cloud between what lies behind it and what lies before it."""
     marched_alone(view)
     if light is UNLIT:
-        refuse_given(view, ("suns",), "a cloud without light")
+        refuse_given(view, ("suns", "scattering"), "a cloud without light")
     camera = view.camera or eye(view)
     size = dataclasses.replace(view, width=camera.width, height=camera.height)
     seconds, start = {}, time.perf_counter()
@@ -108,7 +108,7 @@ def boxed(
 
 def faces(model: Model, view: View) -> Picture:
     """Draw the texture where rays enter the box: it is seen on the faces alone."""
-    refuse_given(view, ("suns", "medium", "look"), "a texture on faces")
+    refuse_given(view, ("suns", "medium", "look", "scattering"), "a texture on faces")
     camera = view.camera or eye(view)
     size = dataclasses.replace(view, width=camera.width, height=camera.height)
     grid = placed_texture(

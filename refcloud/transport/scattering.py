@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -214,6 +216,18 @@ def source_toward(light: ScatteredLight, direction: Vector) -> Array:
         # A cut-off series may dip below 0 where hardly any light is.
         sources.append(np.maximum(np.tensordot(weights, terms, axes=1), 0.0))
     return np.stack([f * sources[k][b] for k, b, f in light.channels], axis=-1)
+
+
+def report_of(lights: Sequence[ScatteredLight]) -> str:
+    """Say how light was solved: the longest sweeps, the largest grid, the residual."""
+    sweeps = max((light.iterations for light in lights), key=sum)
+    D, H, W = max((light.shape for light in lights), key=math.prod)
+    count = f"{len(lights)} solutions, up to " if len(lights) > 1 else ""
+    text = f"{count}{' + '.join(map(str, sweeps))} sweeps, voxels {W} x {H} x {D}"
+    if all(light.converged for light in lights):
+        return text
+    residual = max(light.residual for light in lights)
+    return f"{text}; not converged, residual {residual:.2g}"
 
 
 def source_terms(light: ScatteredLight) -> list[NDArray[Any]]:

@@ -10,8 +10,9 @@ from small_lights import FORWARD, SUN, ball, cloud
 
 import refcloud as rc
 from refcloud.camera import OrthographicCamera, rays
+from refcloud.lighting import solved_light
 from refcloud.march import integrate
-from refcloud.metaballs import voxel_balls
+from refcloud.metaballs import sampled_map, voxel_balls
 from refcloud.optics import Medium, Sun
 from refcloud.transport import Plan, Stage, scattered_light, trace_paths
 
@@ -198,10 +199,18 @@ def test_render_solves_notes_and_refuses() -> None:
     many = rc.render(cloud(), scattering="multiple", **how)
     assert many.linear.sum() > once.linear.sum()
     assert any(note.startswith("scattered light: ") for note in many.notes)
-    with pytest.raises(ValueError, match=r"^scattering: expected single beside"):
-        rc.render(cloud(), scattering="multiple", method="splat")
-    balls = voxel_balls(cloud(4))
-    with pytest.raises(ValueError, match=r"^scattering: expected single for metaballs"):
-        rc.render(balls, scattering="multiple", method="march", width=8)
-    with pytest.raises(ValueError, match=r"^scattering: expected none beside a scene"):
-        rc.render("man-09", scattering="multiple")
+    lights = solved_light(voxel_balls(cloud(4)), BRIGHT, medium=FORWARD, plan="quick")
+    with pytest.raises(ValueError, match=r"^scattering: expected one light that was"):
+        rc.render(cloud(), scattering=lights, width=8)
+
+
+def test_marched_balls_are_as_bright_as_their_map() -> None:
+    balls = voxel_balls(cloud(8))
+    how = {"medium": FORWARD, "suns": BRIGHT, "background": [0, 0, 0]}
+    how |= {"scattering": "multiple", "tolerance": 0.02, "ambient": [0, 0, 0]}
+    eye = rc.Camera([0.9, 0.7, 4.0], [0.5, 0.5, 0.5], width=24, height=18, fov_y=0.4)
+    marched, mapped = (
+        rc.render(what, method="march", camera=eye, **how).linear.sum()
+        for what in (balls, sampled_map(balls))
+    )
+    assert marched == pytest.approx(mapped, rel=0.1)
