@@ -152,23 +152,33 @@ def scattered_light(
     plan, cloud, halvings = cut_out(grid, plan, max(s for s, _, _ in kinds))
     dtype = "float64" if plan.double else "float32"
     columns = [sun_depths(cloud, sun.direction, dtype=dtype).density for sun in suns]
+    behind = []
+    if medium.phase == "hg" and medium.g < 0.0:
+        back = [-sun.direction for sun in suns]
+        behind = [sun_depths(cloud, way, dtype=dtype).density for way in back]
     norms = [
-        beam_norms(cloud, columns, suns, Medium(s, a, medium.g, medium.phase), plan)
+        beam_norms(
+            cloud, columns, behind, suns, Medium(s, a, medium.g, medium.phase), plan
+        )
         for s, a, _ in kinds
     ]
     # 2. Halve it as the plan allows.
     density = cloud.density
     for _ in range(halvings):
         columns = [halved_light(column, density) for column in columns]
+        behind = [halved_light(column, density) for column in behind]
         density = halved(density)
     cell = cell_size(cloud) * 2.0**halvings
     toward = np.array([sun.direction for sun in suns]).reshape(-1, 3)
     passed = np.array(columns).reshape(len(suns), *density.shape)
+    beyond = np.array(behind) if behind else None
     # 3. Solve each kind of matter for all colours of light that fall on it.
     solutions, fields = [], []
     for (sigma, albedo, colours), norm in zip(kinds, norms, strict=True):
         grey, S = Medium(sigma, albedo, medium.g, medium.phase), len(suns)
-        light = Light(toward, passed, colours[:, :S], colours[:, S], colours[:, S + 1])
+        light = Light(
+            toward, passed, beyond, colours[:, :S], colours[:, S], colours[:, S + 1]
+        )
         found = solve(Field(density, cell, grey), light, plan, norm)
         solutions.append(found)
         fields.append(dense(found.moments, found.level.beams))
