@@ -157,12 +157,17 @@ def brought_by(
     return theirs, lights[0].medium
 
 
-def refuse_unsolved(medium: Medium, look: Look) -> None:
-    """Refuse what balls that are lit by a solution do not model."""
+def refuse_coloured(medium: Medium) -> None:
+    """Refuse a medium by channel."""
     if np.ndim(medium.sigma_t) or np.ndim(medium.albedo):
         expected = "light in a medium whose sigma_t and albedo are numbers"
         advice = "march a cloud map, or leave scattering multiple out"
         raise ValueError(complaint("light", expected, "RGB", advice))
+
+
+def refuse_unsolved(medium: Medium, look: Look) -> None:
+    """Refuse what balls that are lit by a solution do not model."""
+    refuse_coloured(medium)
     if look.tau is not None or look.scattering != "split":
         expected = 'a look whose depths are the balls\' own and scattering is "split"'
         advice = 'take the look "cumulus", or leave scattering multiple out'

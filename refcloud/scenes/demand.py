@@ -20,6 +20,7 @@ from typing import Literal
 import numpy as np
 
 from refcloud.camera import Camera, rays
+from refcloud.checking import complaint
 from refcloud.cloudmap import (
     VoxelGrid,
     box_cloud,
@@ -75,6 +76,9 @@ def boxed(
 ) -> Picture:
     """Draw the cloud between what lies behind it and what lies before it."""
     marched_alone(view)
+    if view.scattering == "multiple":
+        expected = "single beside a figure of document D, whose light is in octaves"
+        raise ValueError(complaint("scattering", expected, "multiple"))
     if light is UNLIT:
         refuse_given(view, ("suns", "scattering"), "a cloud without light")
     camera = view.camera or eye(view)

@@ -27,6 +27,10 @@ WITHOUT = {
     "refcloud.lighting.look.named": "looks rules up; nothing is computed",
     "refcloud.lighting.solved.lit_by_solution": "reads a solved field at centres; held"
     " against it and against the march in tests/lighting/test_solved.py",
+    "refcloud.lighting.solved_march.solved_march": "march_shining with other colors;"
+    " tested in tests/lighting/test_solved_march.py",
+    "refcloud.lighting.solved_march.block_means": "means of blocks; tested in"
+    " tests/lighting/test_solved_march.py",
     "refcloud.lighting.solved.solved_light": "scattered_light of a sampled map, light"
     " by light; tested in tests/lighting/test_solved.py",
 }
