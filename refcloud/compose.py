@@ -7,20 +7,33 @@ import importlib
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from refcloud.camera import AnyCamera
+from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import complaint
 from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.image import Picture
-from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
+from refcloud.lighting import (
+    Haze,
+    LitMetaballs,
+    Look,
+    eyeward,
+    lit_by_solution,
+    solved_light,
+    sunward,
+)
+from refcloud.lighting.solved import Lights
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
+from refcloud.transport import ScatteredLight
+from refcloud.transport.plans import GradeName, Plan
+from refcloud.transport.scattering import report_of
 
 LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
+FAR = 1e6  # widths of a cloud: from there all of it is seen along one direction
 
 
 def passes_of(
@@ -45,6 +58,8 @@ class Layer:
     """One cloud of a composed picture: its balls and what they are made of.
 
     Where the balls' light is known already, `lit` brings it, and pass 1 is left out.
+    With scattering "multiple" their light is solved (`solved_light`, by `plan` if one
+    is named), or it was solved before.
     """
 
     balls: Metaballs
@@ -52,6 +67,8 @@ class Layer:
     look: Look
     haze: Haze | None = None
     lit: LitMetaballs | None = None
+    scattering: Literal["single", "multiple"] | Lights = "single"
+    plan: Plan | GradeName | None = None
 
 
 def draw_layers(
@@ -92,12 +109,16 @@ def draw_layers(
     behind = painted(background, camera, suns)
     clock.stop("sky")
     skipped: list[Skipped] = []
+    solved: list[ScatteredLight] = []
     rgba = np.zeros((camera.height, camera.width, 4))
     if behind is not None:
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     for layer in layers:
         share = tolerance / len(layers)
         lit = layer.lit
+        if layer.scattering != "single":
+            lit, lights = solved_layer(layer, suns, camera, LIGHT * share, observe)
+            solved += lights
         if lit is None:
             lit = light_pass(
                 layer.balls,
@@ -126,7 +147,34 @@ def draw_layers(
     reused = sum(layer.lit is not None for layer in layers)
     if reused:
         notes = (*notes, f"light: reused for {reused} of {len(layers)} clouds")
+    if solved:
+        notes = (*notes, f"scattered light: {report_of(solved)}")
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
+
+
+def solved_layer(
+    layer: Layer,
+    suns: tuple[Sun, ...],
+    camera: AnyCamera,
+    tolerance: float,
+    observe: Observer | None,
+) -> tuple[LitMetaballs, tuple[ScatteredLight, ...]]:
+    """Solve a layer's light, or take what was solved, and light the balls by it."""
+    lights = layer.scattering
+    if isinstance(lights, str):
+        how = {"plan": layer.plan, "tolerance": tolerance}
+        lights = solved_light(
+            layer.balls, suns, medium=layer.medium, look=layer.look, **how
+        )
+    if observe is not None:
+        observe("scattered light", lights)
+    eye = camera.eye
+    if not isinstance(camera, Camera):
+        around = np.concatenate([layer.balls.centers, camera.target[None]])
+        width = max(float(np.ptp(around, axis=0).max()), 1.0)
+        eye = camera.target + FAR * width * axes(camera)[2]
+    lit = lit_by_solution(layer.balls, lights, eye=eye, look=layer.look)
+    return lit, lights if isinstance(lights, tuple) else (lights,)
 
 
 def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
@@ -29,6 +30,7 @@ class View:
     seed: int = 0
     observe: Observer | None = None
     backend: Backend = "numpy"
+    scattering: Literal["single", "multiple"] | None = None
 
 
 @dataclass(frozen=True)

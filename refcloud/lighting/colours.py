@@ -41,8 +41,9 @@ class Haze:
 def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     """Give the radiance that each ball would show if nothing came through it.
 
-    Formula: for each sun albedo phase(cos_theta) light, and the ambient light; in the
-    paper's rule a sun's term is g* / (1 - T), g* = albedo tau phase Omega I / (4 pi)
+    Formula: for each sun albedo phase(cos_theta) light + glow, and the ambient light;
+    in the paper's rule a sun's term is g* / (1 - T), g* = albedo tau phase Omega I /
+    (4 pi)
 
     Parameters
     ----------
@@ -68,6 +69,8 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
         cos_theta = np.clip(-(x + y + z), -1.0, 1.0)
         scattered = phase(medium, cos_theta)[:, None] * medium.albedo_rgb
         colours[:, s] = scattered * lit.light[s] * gain
+        if lit.glow is not None:
+            colours[:, s] += lit.glow[s]
     colours[:, -1] = lit.ambient
     return colours
 

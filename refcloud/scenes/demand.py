@@ -20,6 +20,7 @@ from typing import Literal
 import numpy as np
 
 from refcloud.camera import Camera, rays
+from refcloud.checking import complaint
 from refcloud.cloudmap import (
     VoxelGrid,
     box_cloud,
@@ -75,8 +76,11 @@ def boxed(
 ) -> Picture:
     """Draw the cloud between what lies behind it and what lies before it."""
     marched_alone(view)
+    if view.scattering == "multiple":
+        expected = "single beside a figure of document D, whose light is in octaves"
+        raise ValueError(complaint("scattering", expected, "multiple"))
     if light is UNLIT:
-        refuse_given(view, ("suns",), "a cloud without light")
+        refuse_given(view, ("suns", "scattering"), "a cloud without light")
     camera = view.camera or eye(view)
     size = dataclasses.replace(view, width=camera.width, height=camera.height)
     seconds, start = {}, time.perf_counter()
@@ -108,7 +112,7 @@ def boxed(
 
 def faces(model: Model, view: View) -> Picture:
     """Draw the texture where rays enter the box: it is seen on the faces alone."""
-    refuse_given(view, ("suns", "medium", "look"), "a texture on faces")
+    refuse_given(view, ("suns", "medium", "look", "scattering"), "a texture on faces")
     camera = view.camera or eye(view)
     size = dataclasses.replace(view, width=camera.width, height=camera.height)
     grid = placed_texture(

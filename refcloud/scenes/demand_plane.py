@@ -29,6 +29,7 @@ SLICE, HEIGHT = 4.0, 0.4  # cells along a slice's longer side, and where it lies
 FILLING = 3  # octaves of the finer noise
 TOP, BOTTOM = np.array([0.10, 0.24, 0.56]), np.array([0.55, 0.70, 0.88])
 PLAIN = np.full(3, 0.34)
+PARTS = ("camera", "suns", "medium", "look", "scattering")
 GAP = 4  # pixels between the pictures of a pair
 
 
@@ -122,7 +123,7 @@ def greys(values: Array) -> Picture:
 
 def flat_alone(view: View) -> None:
     """Refuse what a picture of the plane has no use for."""
-    refuse_given(view, ("camera", "suns", "medium", "look"), "a picture of the plane")
+    refuse_given(view, PARTS, "a picture of the plane")
 
 
 def refuse_given(view: View, names: tuple[str, ...], what: str) -> None:

@@ -111,7 +111,10 @@ def _draw(
     model: Model, view: View, camera: AnyCamera, sun: Sun, medium: Medium, sky: Sky
 ) -> Picture:
     layer = Layer(
-        model.clouds["cloud"], view.medium or medium, named(view.look or "man")
+        model.clouds["cloud"],
+        view.medium or medium,
+        named(view.look or "man"),
+        scattering=view.scattering or "single",
     )
     return draw_layers(
         [layer],

@@ -55,7 +55,7 @@ def draw(model: Model, view: View) -> Picture:
         Sky(),
         medium=view.medium or Medium(sigma_t, g=G, phase="hg"),
         ambient=AMBIENT,
-        scattering="multiple",
+        scattering=view.scattering or "multiple",
         tolerance=view.tolerance,
         observe=view.observe,
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -139,34 +141,46 @@ def scattered_light(
     True
     """
     suns = (suns,) if isinstance(suns, Sun) else suns
+    refuse_unbounded(grid, medium)
     if isinstance(plan, str):
         plan = PLANS[plan]
     elif plan is None:
-        plan = plan_for(tolerance, suns, medium)
-    refuse_unbounded(grid, medium)
+        edge = float(cell_size(grid).max())
+        depth = float(medium.sigma_t_rgb.max()) * float(grid.density.max()) * edge
+        plan = plan_for(tolerance, suns, medium, depth)
     above, below = (DARK if c is None else np.asarray(c) for c in (sky, ground))
     # 1. Cut the cloud out, and let the suns shine on it.
     kinds, channels = cases_of(medium, suns, above, below)
     plan, cloud, halvings = cut_out(grid, plan, max(s for s, _, _ in kinds))
     dtype = "float64" if plan.double else "float32"
     columns = [sun_depths(cloud, sun.direction, dtype=dtype).density for sun in suns]
+    behind = []
+    if medium.phase == "hg" and medium.g < 0.0:
+        back = [-sun.direction for sun in suns]
+        behind = [sun_depths(cloud, way, dtype=dtype).density for way in back]
     norms = [
-        beam_norms(cloud, columns, suns, Medium(s, a, medium.g, medium.phase), plan)
+        beam_norms(
+            cloud, columns, behind, suns, Medium(s, a, medium.g, medium.phase), plan
+        )
         for s, a, _ in kinds
     ]
     # 2. Halve it as the plan allows.
     density = cloud.density
     for _ in range(halvings):
         columns = [halved_light(column, density) for column in columns]
+        behind = [halved_light(column, density) for column in behind]
         density = halved(density)
     cell = cell_size(cloud) * 2.0**halvings
     toward = np.array([sun.direction for sun in suns]).reshape(-1, 3)
     passed = np.array(columns).reshape(len(suns), *density.shape)
+    beyond = np.array(behind) if behind else None
     # 3. Solve each kind of matter for all colours of light that fall on it.
     solutions, fields = [], []
     for (sigma, albedo, colours), norm in zip(kinds, norms, strict=True):
         grey, S = Medium(sigma, albedo, medium.g, medium.phase), len(suns)
-        light = Light(toward, passed, colours[:, :S], colours[:, S], colours[:, S + 1])
+        light = Light(
+            toward, passed, beyond, colours[:, :S], colours[:, S], colours[:, S + 1]
+        )
         found = solve(Field(density, cell, grey), light, plan, norm)
         solutions.append(found)
         fields.append(dense(found.moments, found.level.beams))
@@ -214,6 +228,18 @@ def source_toward(light: ScatteredLight, direction: Vector) -> Array:
         # A cut-off series may dip below 0 where hardly any light is.
         sources.append(np.maximum(np.tensordot(weights, terms, axes=1), 0.0))
     return np.stack([f * sources[k][b] for k, b, f in light.channels], axis=-1)
+
+
+def report_of(lights: Sequence[ScatteredLight]) -> str:
+    """Say how light was solved: the longest sweeps, the largest grid, the residual."""
+    sweeps = max((light.iterations for light in lights), key=sum)
+    D, H, W = max((light.shape for light in lights), key=math.prod)
+    count = f"{len(lights)} solutions, up to " if len(lights) > 1 else ""
+    text = f"{count}{' + '.join(map(str, sweeps))} sweeps, voxels {W} x {H} x {D}"
+    if all(light.converged for light in lights):
+        return text
+    residual = max(light.residual for light in lights)
+    return f"{text}; not converged, residual {residual:.2g}"
 
 
 def source_terms(light: ScatteredLight) -> list[NDArray[Any]]:
