@@ -146,24 +146,53 @@ def draw_fragments(
     )
     source, depths = source[inner], depths[inner]
 
+    write(buffer, box, source, depths, state)
+
+
+def write(
+    buffer: Framebuffer,
+    where: tuple[Any, Any],
+    source: Array,
+    depths: Array,
+    state: State,
+) -> None:
+    """Send fragments that lie within the scissor to their pixels, unchecked.
+
+    Parameters
+    ----------
+    buffer
+        The framebuffer, written in place.
+    where
+        Rows and columns: two slices, or two lists in which no pixel comes twice.
+    source
+        Colours, shape (h, w, 4) or (n, 4).
+    depths
+        Shape (h, w) or (n,).
+    state
+        The operations that are on.
+    """
     # 2. Depth test, and the depths of those that pass.
-    passed = np.ones(depths.shape, dtype=bool)
+    passed = None
     if state.depth_func is not None and buffer.depth is not None:
-        passed = DEPTH_FUNCS[state.depth_func](depths, buffer.depth[box])
+        before = buffer.depth[where]
+        passed = DEPTH_FUNCS[state.depth_func](depths, before)
         if state.depth_mask:
-            buffer.depth[box][passed] = depths[passed]
+            buffer.depth[where] = np.where(passed, depths, before)
 
     # 3. Blend, and round to what the format holds.
-    pixels = buffer.pixels[box]
-    how = buffer.format, buffer.arithmetic
+    pixels = buffer.pixels[where]
     if state.blending is None:
         colors = stored(source, buffer.format, arithmetic=buffer.arithmetic)
     else:
+        how = buffer.format, buffer.arithmetic
         colors = blended_as(source, pixels, state.blending, *how)
 
     # 4. Write, channel by channel.
     for channel in _written(state):
-        pixels[passed, channel] = colors[passed, channel]
+        new = colors[..., channel]
+        if passed is not None:
+            new = np.where(passed, new, pixels[..., channel])
+        buffer.pixels[(*where, channel)] = new
 
 
 @checked
