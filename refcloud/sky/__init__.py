@@ -6,6 +6,7 @@ from refcloud.sky.flat_base import FlatBase, base_density, light_from_above
 from refcloud.sky.fog import fog_factor, fogged
 from refcloud.sky.fractal import fractal_texture, fractal_volume, looked_up
 from refcloud.sky.gradient import Sky, clear_sky, printed_gradient, sky_gradient
+from refcloud.sky.meshes import surface_mesh
 from refcloud.sky.places import Places, places
 from refcloud.sky.puff import Puff, puff_density
 from refcloud.sky.shaded import Fog, shaded
@@ -52,4 +53,5 @@ __all__ = [
     "sky_gradient",
     "sphere_coordinates",
     "sphere_points",
+    "surface_mesh",
 ]

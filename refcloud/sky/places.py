@@ -3,18 +3,22 @@
 A shader needs to know, for every pixel, which point of the surface it shows, where that
 lies in the texture and how far it is. None of that changes while the eye stands still:
 an animation hands the places of one frame to the next, and only looks its clouds up
-anew. `places_by_triangles` finds the same by drawing the surface's mesh.
+anew. Drawing the surface's mesh by triangles finds the same, but for its facets: what
+OpenGL does, where the attributes of three corners are interpolated to each pixel.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Annotated, Literal
 
 import numpy as np
 
-from refcloud.camera import AnyCamera, rays
+from refcloud.camera import AnyCamera, Camera, rays
 from refcloud.checking import checked
-from refcloud.conventions import Array, Skipped
+from refcloud.conventions import Array, Range, Skipped
+from refcloud.raster import Fragments, State, draw_triangles, framebuffer
+from refcloud.sky.meshes import surface_mesh
 from refcloud.sky.surfaces import (
     Dome,
     Plane,
@@ -23,6 +27,9 @@ from refcloud.sky.surfaces import (
     plane_coordinates,
     sphere_coordinates,
 )
+
+Way = Literal["rays", "triangles"]
+FARTHEST = 1e9  # scene units: how far triangles of parallel rays count
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +49,8 @@ class Places:
         u and v in the surface's texture, shape (N, 2).
     distance
         From the eye, shape (N,), scene units.
+    way, fineness
+        How they were found.
     skipped
         One row where the places were handed on from an earlier picture.
     """
@@ -52,16 +61,24 @@ class Places:
     points: Array
     coordinates: Array
     distance: Array
+    way: Way = "rays"
+    fineness: int = 0
     skipped: tuple[Skipped, ...] = ()
 
 
 @checked
 def places(
-    camera: AnyCamera, surface: Surface, *, earlier: Places | None = None
+    camera: AnyCamera,
+    surface: Surface,
+    *,
+    way: Way = "rays",
+    fineness: Annotated[int, Range(3, 2000, "cells")] = 64,
+    earlier: Places | None = None,
 ) -> Places:
     """Find what every pixel of a picture sees of a surface.
 
-    Formula: origin + t direction, the smallest t > 0 at which the surface is met
+    Formula: origin + t direction, the smallest t > 0 at which the surface is met; or
+    the corners' own points and coordinates, interpolated over each triangle
 
     Parameters
     ----------
@@ -69,15 +86,19 @@ def places(
         The eye, in or outside of a sphere.
     surface
         A plane, a sphere or a dome.
+    way
+        A ray for each pixel, or triangles.
+    fineness
+        Cells along each side of the mesh that is drawn as triangles.
     earlier
-        The places of an earlier picture: handed on where eye and surface are the same,
-        and then reported in `skipped`.
+        The places of an earlier picture: handed on where eye, surface and way are the
+        same, and then reported in `skipped`.
 
     Returns
     -------
     The places.
 
-    Source: document S, section 5.2 (F14 to F17).
+    Source: document S, section 5.2 (F10, F14 to F17).
 
     Examples
     --------
@@ -86,8 +107,10 @@ def places(
     >>> places(up, Plane(height=3.0)).distance
     array([3.])
     """
-    if earlier is not None and _same(earlier, camera, surface):
+    if earlier is not None and _same(earlier, camera, surface, way, fineness):
         return handed_on(earlier)
+    if way == "triangles":
+        return _drawn(camera, surface, fineness)
     origins, directions = rays(camera)
     t = distance_to(surface, origins.reshape(-1, 3), directions.reshape(-1, 3))
     seen = np.isfinite(t)
@@ -154,8 +177,36 @@ def coordinates_on(surface: Surface, points: Array) -> Array:
     return sphere_coordinates(points, surface)
 
 
-def _same(earlier: Places, camera: AnyCamera, surface: Surface) -> bool:
+def _drawn(camera: AnyCamera, surface: Surface, fineness: int) -> Places:
+    """Find places by drawing the surface's mesh: a shader that writes them down."""
+    height, width = camera.height, camera.width
+    held = np.zeros((height, width, 5))  # u, v, x, y, z
+    seen = np.zeros((height, width), bool)
+
+    def write(fragments: Fragments) -> Array:
+        at = fragments.row, fragments.column
+        held[at] = fragments.values.T
+        seen[at] = True
+        return np.ones((len(fragments.row), 4))
+
+    buffer = framebuffer(width, height, depth=1.0)
+    far = None if isinstance(camera, Camera) else FARTHEST
+    mesh = surface_mesh(surface, fineness)
+    draw_triangles(buffer, camera, mesh, write, state=State(depth_func="LESS"), far=far)
+    found = held[seen]
+    points = found[:, 2:]
+    start = np.broadcast_to(rays(camera)[0], (height, width, 3))[seen]
+    distance = np.sqrt(np.square(points - start).sum(axis=1))
+    uv = found[:, :2]
+    return Places(camera, surface, seen, points, uv, distance, "triangles", fineness)
+
+
+def _same(
+    earlier: Places, camera: AnyCamera, surface: Surface, way: Way, fineness: int
+) -> bool:
     """Tell whether eye and surface are those of an earlier picture."""
+    if way != earlier.way or (way == "triangles" and fineness != earlier.fineness):
+        return False
     pairs = ((earlier.camera, camera), (earlier.surface, surface))
     return all(
         type(a) is type(b)

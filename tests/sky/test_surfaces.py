@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from twins.skies import drawn_points, drawn_surface
 
-from refcloud.camera import Camera, rays
+from refcloud.camera import Camera, OrthographicCamera, rays
+from refcloud.noise import fbm
 from refcloud.sky import (
     Dome,
     Fog,
@@ -97,6 +98,64 @@ def test_what_a_pixel_sees_lies_on_its_ray_and_on_the_surface(surface) -> None:
     assert (found.distance > 0.0).all()
 
 
+def apart(a: np.ndarray, b: np.ndarray, surface) -> np.ndarray:
+    off = np.abs(a - b)
+    # Around a sphere u = 0 and u = 1 are one place.
+    return np.minimum(off, 1.0 - off) if isinstance(surface, Sphere) else off
+
+
+@pytest.mark.parametrize("surface", ALL, ids=lambda s: type(s).__name__)
+def test_triangles_see_what_rays_see(surface) -> None:
+    exact = places(INSIDE, surface)
+    errors = []
+    for fineness in (24, 48):
+        drawn = places(INSIDE, surface, way="triangles", fineness=fineness)
+        # A ball's outline has corners; seen from inside there is none.
+        missed = np.count_nonzero(exact.seen != drawn.seen)
+        assert missed <= (2 if surface is ALL[3] else 0)
+        both = exact.seen & drawn.seen
+        one, other = (p.coordinates[both[p.seen]] for p in (exact, drawn))
+        off = apart(one, other, surface)
+        at, there = (p.points[both[p.seen]] for p in (exact, drawn))
+        far = np.linalg.norm(at - there, axis=1) / exact.distance[both[exact.seen]]
+        errors.append([np.median(off), np.quantile(off, 0.95), np.median(far)])
+    if isinstance(surface, Plane):
+        # Flat in itself; corners are snapped to 1/256 of a pixel, which moves a ray by
+        # as much, and what it meets by the more the flatter it meets the plane.
+        pixel = 2.0 * math.tan(0.6) / 18
+        flatness = 1.5 / exact.distance[both[exact.seen]]
+        assert (far * flatness).max() < pixel / 256
+        return
+    # Facets: half as wide, a quarter as far from the sphere.
+    for coarse, fine in zip(*errors, strict=True):
+        assert fine < 0.35 * coarse
+    assert errors[1][0] < 3e-4
+    assert errors[1][2] < 1e-3
+
+
+@pytest.mark.parametrize("kind", ["pinhole", "parallel"])
+def test_pictures_by_triangles_and_by_rays_are_alike(kind) -> None:
+    camera = INSIDE
+    if kind == "parallel":
+        camera = OrthographicCamera(
+            [0, 0, 30], [0, 0, 0], height_of_view=9.0, width=24, height=18
+        )
+    pictures = []
+    for way in ("rays", "triangles"):
+        found = places(camera, Sphere(), way=way, fineness=96)
+        assert found.way == way
+        behind = np.zeros((18, 24, 3))
+
+        def shade(p):
+            light = 0.5 + 0.5 * fbm(0.2 * p.points, octaves=2)
+            return light, np.ones(len(light))
+
+        pictures.append(shaded(behind, found, shade, fog=Fog(0.05)))
+    # Light changes by about 0.3 per unit, facets lie within 3e-3 of the sphere.
+    assert np.abs(pictures[0] - pictures[1]).max() < 2e-3
+    assert np.ptp(pictures[0]) > 0.05
+
+
 def test_a_sphere_from_outside_shows_its_near_side() -> None:
     found = places(INSIDE, ALL[3])
     assert 0 < np.count_nonzero(found.seen) < found.seen.size
@@ -125,6 +184,12 @@ def test_places_are_handed_on_while_the_eye_stands_still() -> None:
         found = places(camera, surface, earlier=again)
         assert not found.skipped
         assert found.points is not first.points
+    drawn = places(INSIDE, Dome(), way="triangles", fineness=9, earlier=first)
+    assert not drawn.skipped
+    assert places(INSIDE, Dome(), way="triangles", fineness=9, earlier=drawn).skipped
+    assert not places(
+        INSIDE, Dome(), way="triangles", fineness=8, earlier=drawn
+    ).skipped
 
 
 @given(st.floats(0.0, 1.0))

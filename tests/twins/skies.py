@@ -16,6 +16,10 @@ from twins import Draw, twin
 from twins.camera import as_plain, coordinates, drawn_camera, places
 from twins.sky import colours
 
+WITHOUT = {
+    "refcloud.sky.meshes.surface_mesh": "corners by functions that have rows",
+}
+
 ROUNDED = "the same few operations: some last bits"
 STEEP = "a camera's last bits, 3e-14, over distances of up to a few hundred; times 10"
 GRAZE = 1e-2  # of the radius or of a direction: nearer a ray grazes, and decides apart
