@@ -1,7 +1,19 @@
 """Named scenes: the composed cumulus, and the figures of the documents."""
 
 from refcloud.scene import SCENES, Model, Scene, View
-from refcloud.scenes import cumulus, demand, demand_hero, demand_plane, man, multiple
+from refcloud.scenes import (
+    cumulus,
+    demand,
+    demand_hero,
+    demand_plane,
+    man,
+    multiple,
+    shader,
+    shader_light,
+    shader_objects,
+    shader_particles,
+    simple,
+)
 
 __all__ = [
     "SCENES",
@@ -14,4 +26,9 @@ __all__ = [
     "demand_plane",
     "man",
     "multiple",
+    "shader",
+    "shader_light",
+    "shader_objects",
+    "shader_particles",
+    "simple",
 ]
