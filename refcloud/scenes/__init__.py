@@ -1,11 +1,12 @@
 """Named scenes: the composed cumulus, and the figures of the documents."""
 
-from refcloud.scene import SCENES, Model, Scene, View
+from refcloud.scene import SCENES, Model, Motion, Scene, View
 from refcloud.scenes import cumulus, demand, demand_hero, demand_plane, man, multiple
 
 __all__ = [
     "SCENES",
     "Model",
+    "Motion",
     "Scene",
     "View",
     "cumulus",
