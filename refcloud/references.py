@@ -93,6 +93,7 @@ PIECES = {
     "W04": "M: the cloud-map file",
     "W05": "M: the cloud file and the programs' parameters",
     "W12": "M, S, C: the same seed gives the same picture",
+    "W14": "C: animation, left to its second part",
     "X03": "M: 11,000 voxels as 1000, 100 and 30 balls",
     "X09": "M, S: left as future work: balls without voxels in between, light that is"
     " scattered forward many times",

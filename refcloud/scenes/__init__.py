@@ -1,6 +1,6 @@
 """Named scenes: the composed cumulus, and the figures of the documents."""
 
-from refcloud.scene import SCENES, Model, Scene, View
+from refcloud.scene import SCENES, Model, Motion, Scene, View
 from refcloud.scenes import (
     cumulus,
     demand,
@@ -18,6 +18,7 @@ from refcloud.scenes import (
 __all__ = [
     "SCENES",
     "Model",
+    "Motion",
     "Scene",
     "View",
     "cumulus",
