@@ -64,6 +64,7 @@ FLAT_SEED, SOLID_SEED, TEXTURE_SEED = 3, 1, 4
 SOLID_CELLS, SOLID_PERIOD = 3.0, 8  # cells per radius; they repeat after so many
 TEXTURE, TEXTURE_CELLS, OCTAVES = 512, 6, 6
 VOLUME, VOLUME_CELLS = 96, 6
+SOLID_REPEATS = SOLID_PERIOD / SOLID_CELLS
 DOME_REPEATS = math.pi * DOME.radius / DOME.tiles  # along the half-sphere
 
 
@@ -230,7 +231,7 @@ for name, title, draw, motion in (
             upward_eye,
             turns=IN_PLACE,
             period=float(SOLID_PERIOD),
-            repeats=(SOLID_PERIOD / SOLID_CELLS,) * 3,
+            repeats=(SOLID_REPEATS, SOLID_REPEATS, SOLID_REPEATS),
         ),
     ),
     (

@@ -35,8 +35,13 @@ def outlook(view: View, target: Sequence[float], fov_y: float) -> AnyCamera:
     """Give the view's own camera, or one that stands at the origin and looks up."""
     if view.camera is not None:
         return view.camera
-    size = {"width": view.width, "height": view.height}
-    return Camera(np.zeros(3), np.array(target, np.float64), fov_y=fov_y, **size)
+    return Camera(
+        np.zeros(3),
+        np.array(target, np.float64),
+        fov_y=fov_y,
+        width=view.width,
+        height=view.height,
+    )
 
 
 def refuse_unused(view: View, *more: str) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from refcloud.camera import AnyCamera, Camera
 from refcloud.conventions import WHOLE_SPHERE, Array
 from refcloud.image import Picture, srgb_decode
-from refcloud.noise import fbm, lattice_random
+from refcloud.noise import fbm, lattice_random, wrapped_bilinear
 from refcloud.noise.kinds import KindName
 from refcloud.raster import (
     Fragments,
@@ -59,7 +59,8 @@ SOLID_CELLS, SOLID_SEED = 3.0, 2
 PICTURE = 256  # texels of the picture around a ball, half as many from pole to pole
 
 PUFF = Puff(radius=0.95, cell=0.55, distortion=1.0, softness=0.8, octaves=6, seed=2)
-PUFF_STEPS, PUFF_REACH, PUFF_SIGMA = 10, 1.0, 3.2
+# Its light: steps toward the sun, their length, extinction on that way and to the eye.
+PUFF_STEPS, PUFF_STEP, PUFF_SIGMA, PUFF_OPACITY = 10, 0.1, 3.2, 2.6
 SMOKE, SHADE = np.array([1.0, 0.97, 0.92]), np.array([0.30, 0.36, 0.46])
 
 BUBBLE = Displacement(amount=0.42, frequency=1.25, octaves=1, seed=3)
@@ -124,56 +125,51 @@ def puff(model: Model, view: View) -> Picture:
     suns = (SUN,) if view.suns is None else view.suns
 
     def draw():
-        pixel = 3.4 / min(view.width, view.height)
-        x = pixel * (np.arange(view.width) + 0.5 - 0.5 * view.width)
-        y = pixel * (0.5 * view.height - np.arange(view.height) - 0.5)
+        # 1. Density at every pixel's centre.
+        width, height = view.width, view.height
+        pixel = 3.4 / min(width, height)
+        x: Array = pixel * (np.arange(width, dtype=np.float64) + 0.5 - 0.5 * width)
+        y: Array = pixel * (0.5 * height - np.arange(height, dtype=np.float64) - 0.5)
         at = np.stack(np.meshgrid(x, y), axis=-1)
         how = {"time": view.time, "dtype": precision(view)}
         density = puff_density(at, PUFF, **how)
-        cover = density > 0.0
-        light = np.tile(SHADE, (np.count_nonzero(cover), 1))
+
+        # 2. From each pixel toward the suns, looked up among the pixels, where it was
+        #    drawn already (R09); around the picture there is none.
+        rows, columns = np.nonzero(density > 0.0)
+        framed = np.pad(density, 1)
+        light = np.repeat(SHADE[None], len(rows), axis=0)
         for sun in suns:
-            depth = np.zeros(len(light))
-            step = PUFF_REACH / PUFF_STEPS
+            depth = np.zeros(len(rows))
             for i in range(PUFF_STEPS):
-                toward = (i + 0.5) * step * sun.direction[:2]
-                # Looked up among the pixels, where it was drawn already (R09).
-                depth += step * _between_pixels(density, x, y, at[cover] + toward)
+                far = (i + 0.5) * PUFF_STEP / pixel
+                u = np.clip(columns + 1 + far * sun.direction[0], 0, width + 1)
+                v = np.clip(rows + 1 - far * sun.direction[1], 0, height + 1)
+                depth += PUFF_STEP * wrapped_bilinear(framed, u, v)
             T = np.exp(-PUFF_SIGMA * depth)[:, None]
             light += SMOKE * T * sun.irradiance / WHOLE_SPHERE * 0.8
-        eye = Camera(
-            np.zeros(3), np.array([0, 0.6, -1.0]), width=view.width, height=view.height
-        )
-        over = painted(eye, view)
-        share = -np.expm1(-2.6 * density[cover])[:, None]
-        over[cover] = share * light + (1.0 - share) * over[cover]
+
+        # 3. Over the sky.
+        ahead = np.array([0.0, 0.6, -1.0])
+        over = painted(Camera(np.zeros(3), ahead, width=width, height=height), view)
+        share = -np.expm1(-PUFF_OPACITY * density[rows, columns])[:, None]
+        over[rows, columns] = share * light + (1.0 - share) * over[rows, columns]
         return over, (), ()
 
     return timed(draw)
-
-
-def _between_pixels(values: Array, x: Array, y: Array, at: Array) -> Array:
-    """Look up pixels' values between their centres, 0 outside of the picture."""
-    framed = np.pad(values, 1)
-    height, width = framed.shape
-    u = (at[:, 0] - x[0]) / (x[-1] - x[0] or 1.0) * (len(x) - 1) + 1.5
-    v = (at[:, 1] - y[0]) / (y[-1] - y[0] or 1.0) * (len(y) - 1) + 1.5
-    inside = np.stack(
-        [
-            np.clip(u / width, 0.5 / width, 1 - 0.5 / width),
-            np.clip(v / height, 0.5 / height, 1 - 0.5 / height),
-        ],
-        axis=-1,
-    )
-    return looked_up(framed, inside)
 
 
 def bubble_eye(model: Model, view: View) -> AnyCamera:
     """Look at the sphere from the front, a little from below."""
     if view.camera is not None:
         return view.camera
-    size = {"width": view.width, "height": view.height}
-    return Camera(np.array([0.0, -1.1, 4.2]), np.zeros(3), fov_y=0.72, **size)
+    return Camera(
+        np.array([0.0, -1.1, 4.2]),
+        np.zeros(3),
+        fov_y=0.72,
+        width=view.width,
+        height=view.height,
+    )
 
 
 def bubble_mesh(time: float) -> Mesh:
