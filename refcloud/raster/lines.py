@@ -23,9 +23,9 @@ from refcloud.camera import Camera, OrthographicCamera
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Shape
 from refcloud.raster.factors import Blending, Factor
-from refcloud.raster.fragments import State, write
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer, Rgba, Size
 from refcloud.raster.meshes import WORLD
+from refcloud.raster.store import State, stored_in, write
 from refcloud.raster.window import (
     NEAR,
     SUBPIXEL,
@@ -203,6 +203,7 @@ def draw_lines(
     refuse_other_size(buffer, camera)
     planes = planes_of(camera, near)
     state = State(blending=Blending(src_factor, dst_factor))
+    store = stored_in(buffer)
     for ends in to_camera(camera, lines):
         cut = cut_line(ends, planes)
         if cut is None:
@@ -210,4 +211,4 @@ def draw_lines(
         place = snapped(camera, cut, near)
         found = pixels_between(place, camera.width, camera.height, thickness)
         source = np.broadcast_to(color, (len(found[0]), CHANNELS))
-        write(buffer, found, source, np.zeros(len(found[0])), state)
+        write(store, found, source, None, state)

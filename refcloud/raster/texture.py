@@ -14,10 +14,9 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from refcloud.checking import check, check_fields, checked, complaint
-from refcloud.conventions import Array, Range, Shape
+from refcloud.checking import check, check_fields, complaint
+from refcloud.conventions import Array, Shape
 from refcloud.raster.mipmaps import mip_levels
 
 Filter = Literal["NEAREST", "LINEAR"]
@@ -32,8 +31,6 @@ MinFilter = Literal[
 Wrap = Literal["REPEAT", "MIRRORED_REPEAT", "CLAMP_TO_EDGE"]
 MOST_TEXELS = 16_000_000  # 4096 x 4096 or 256^3: half a gigabyte of float64 RGBA
 CODES = 255.0
-PLACES = Range(-1e100, 1e100)
-LEAST = 2.0**-100  # texels to a pixel: of anything smaller the logarithm is no matter
 # Texels beyond an edge, as a border of one texel shows them.
 BORDER = {"REPEAT": "wrap", "MIRRORED_REPEAT": "symmetric", "CLAMP_TO_EDGE": "edge"}
 
@@ -116,237 +113,23 @@ class Texture:
         return mip_levels(first)
 
     @functools.cached_property
-    def tables(self) -> tuple[Array, ...]:
-        """Give the levels with a border of one texel around, by `wrap`.
+    def tables(self) -> dict[str, list[Array]]:
+        """Give the levels as they are looked up, channels first, by kind of float.
 
-        A lookup of two neighbours then needs no care at edges.
+        Each has a border of one texel around, by `wrap`: a lookup of two neighbours
+        then needs no care at edges.
         """
-        return tuple(self._bordered(level) for level in self.levels)
+        exact = [self._bordered(np.moveaxis(level, -1, 0)) for level in self.levels]
+        return {"f8": exact, "f4": [table.astype("f4") for table in exact]}
 
     def _bordered(self, level: Array) -> Array:
-        for axis, wrap in enumerate(reversed(self.wraps)):
-            width = [(int(k == axis),) * 2 for k in range(level.ndim)]
+        for axis, wrap in zip((-1, -2, -3), self.wraps, strict=False):
+            width = [(0, 0)] * level.ndim
+            width[axis] = 1, 1
             level = np.pad(level, width, BORDER[wrap])  # type: ignore[call-overload]
-        return level
+        return np.ascontiguousarray(level, np.float64)
 
-
-@checked
-def sample(
-    texture: Texture,
-    coords: Annotated[Array, Shape("...", "k"), PLACES],
-    *,
-    along_x: Annotated[Array, Shape("...", "k"), PLACES] | None = None,
-    along_y: Annotated[Array, Shape("...", "k"), PLACES] | None = None,
-    level: Annotated[Array, Shape("...")] | float | None = None,
-) -> Array:
-    """Look a texture up.
-
-    Formula: NEAREST texel floor(s W); LINEAR the texels about s W - 1/2, each by its
-    nearness; level log2 max(|d(s W, t H)/dx|, |d(s W, t H)/dy|)
-
-    Parameters
-    ----------
-    texture
-        The texels, their filters, wrap and matrix.
-    coords
-        s, t or s, t, r, shape (..., 2) or (..., 3); a missing r is 0, and of three the
-        matrix makes as many as the texture has.
-    along_x, along_y
-        Their change from pixel to pixel, the same shape: chooses between the filters
-        and the level. None for both magnifies.
-    level
-        The level itself (textureLod), shape (...) or one number, in place of these.
-
-    Returns
-    -------
-    Shape (..., C).
-
-    Raises
-    ------
-    ValueError
-        coords has other than 2 or 3 numbers, or only one of along_x and along_y is
-        there.
-
-    Source: OpenGL 4.6, section 8.14 and 8.15 (texture minification, magnification);
-    paper S (F11), document C (F05, F06).
-
-    Examples
-    --------
-    >>> ramp = Texture([[[0.0], [1.0]]], wrap="CLAMP_TO_EDGE")
-    >>> sample(ramp, [[0.25, 0.5], [0.5, 0.5], [0.9, 0.5]])[:, 0]
-    array([0. , 0.5, 1. ])
-    """
-    if coords.shape[-1] not in (2, 3):
-        got = f"shape {coords.shape}"
-        raise ValueError(complaint("coords", "shape (..., 2) or (..., 3)", got))
-    if (along_x is None) != (along_y is None):
-        raise ValueError(complaint("along_x", "both along_x and along_y", "one"))
-    leading, k = coords.shape[:-1], coords.shape[-1]
-    columns = coords.reshape(-1, k).T
-    levels = None
-    if level is not None:
-        levels = np.broadcast_to(level, leading).ravel()
-    elif along_x is not None and along_y is not None:
-        levels = level_of_detail(
-            texture, along_x.reshape(-1, k).T, along_y.reshape(-1, k).T
-        )
-    found = looked_up(texture, transformed(texture, columns), levels)
-    return found.reshape(*leading, -1)
-
-
-def transformed(texture: Texture, coords: Array, way: bool = False) -> Array:
-    """Apply the texture matrix.
-
-    Parameters
-    ----------
-    texture
-        Of d coordinates.
-    coords
-        Shape (k, n), k being 2 or 3.
-    way
-        Whether they are differences, which a shift leaves as they are.
-
-    Returns
-    -------
-    Shape (d, n).
-    """
-    d, k = texture.dimension, len(coords)
-    turn, shift = texture.matrix[:d, :k], texture.matrix[:d, 3:]
-    if np.array_equal(turn, np.eye(d, k)):
-        padded = coords[:d] if d <= k else np.concatenate([coords, 0.0 * coords[:1]])
-        return padded if way or not shift.any() else padded + shift
-    # Without a matrix product: the same bits wherever a place stands in the list.
-    moved = np.stack([sum(turn[a, b] * coords[b] for b in range(k)) for a in range(d)])
-    return moved if way else moved + shift
-
-
-def level_of_detail(texture: Texture, along_x: Array, along_y: Array) -> Array:
-    """Give the level whose texels are about as large as a pixel.
-
-    Parameters
-    ----------
-    texture
-        Of d coordinates.
-    along_x, along_y
-        Change of the coordinates from pixel to pixel, before the matrix, shape (k, n).
-
-    Returns
-    -------
-    log2 of texels to a pixel, shape (n,).
-    """
-    sides = np.array(texture.texels.shape[-2::-1], np.float64)[:, None]
-    ways = (sides * transformed(texture, a, way=True) for a in (along_x, along_y))
-    wide, high = (np.sqrt(np.square(way).sum(axis=0)) for way in ways)
-    return np.log2(np.maximum(np.maximum(wide, high), LEAST))
-
-
-def looked_up(texture: Texture, coords: Array, levels: Array | None) -> Array:
-    """Look up by the filter that each level of detail asks for, unchecked.
-
-    Parameters
-    ----------
-    texture
-        Of d coordinates and C channels.
-    coords
-        After the matrix, shape (d, n).
-    levels
-        log2 of texels to a pixel, shape (n,); None magnifies.
-
-    Returns
-    -------
-    Shape (n, C).
-    """
-    mag, (minify, *mipmap) = texture.mag_filter, texture.min_filter.split("_MIPMAP_")
-    between = mipmap[0] if mipmap else None
-    if levels is None or (between is None and minify == mag):
-        return at_level(texture, 0, mag, coords)
-    # 1. Which filter: the limit is half a level where a sharp level would follow.
-    limit = 0.5 if mag == "LINEAR" and minify == "NEAREST" and between else 0.0
-    smaller = levels > limit
-    # 2. Which level, and which share of the next smaller one.
-    lower, share = np.zeros(len(levels), np.int64), np.zeros(len(levels))
-    if between:
-        last = float(len(texture.tables) - 1)
-        held = np.clip(levels, 0.0, last)
-        lower = (np.ceil(held + 0.5) - 1.0 if between == "NEAREST" else held).astype(
-            np.int64
-        )
-        lower = np.minimum(lower, int(last))
-        share = held - lower if between == "LINEAR" else share
-    # 3. All of one level at a time.
-    found = np.empty((len(levels), texture.texels.shape[-1]))
-    large = np.flatnonzero(~smaller)
-    found[large] = at_level(texture, 0, mag, coords[:, large])
-    for level in np.unique(lower[smaller]):
-        here = np.flatnonzero(smaller & (lower == level))
-        found[here] = at_level(texture, level, minify, coords[:, here])
-        here = here[share[here] > 0.0]
-        if here.size:
-            next_one = at_level(texture, level + 1, minify, coords[:, here])
-            found[here] += share[here, None] * (next_one - found[here])
-    return found
-
-
-def at_level(texture: Texture, level: int, filter: str, coords: Array) -> Array:
-    """Look up within one level.
-
-    Parameters
-    ----------
-    texture
-        Of d coordinates and C channels.
-    level
-        0 for the largest.
-    filter
-        NEAREST or LINEAR.
-    coords
-        Shape (d, n).
-
-    Returns
-    -------
-    Shape (n, C).
-    """
-    table = texture.tables[level]
-    flat = table.reshape(-1, table.shape[-1])
-    # 1. Into [0, 1], then to texels; the border makes up for one texel beyond.
-    base = np.zeros(coords.shape[1], np.int64)
-    stride, strides, shares = 1, [], []
-    for a, wrap in enumerate(texture.wraps):
-        size = table.shape[-2 - a]
-        x = within_one(coords[a], wrap) * (size - 2)
-        if filter == "LINEAR":
-            x = x + 0.5
-            whole = np.floor(x)
-            shares.append((x - whole)[:, None])
-            base += stride * whole.astype(np.int64)
-        else:
-            base += stride * (np.floor(x) + 1.0).astype(np.int64)
-        strides.append(stride)
-        stride *= size
-    # 2. Mix the corners, first along s, then along t, then along r.
-    if filter == "NEAREST":
-        return flat.take(base, axis=0)
-    return _mixed(flat, base, strides, shares)
-
-
-def _mixed(flat: Array, base: NDArray[np.int64], strides: list, shares: list) -> Array:
-    """Interpolate between a texel and its neighbours along each axis."""
-    if not strides:
-        return flat.take(base, axis=0)
-    *strides, stride = strides
-    *shares, share = shares
-    low = _mixed(flat, base, strides, shares)
-    high = _mixed(flat, base + stride, strides, shares)
-    high -= low
-    high *= share
-    high += low
-    return high
-
-
-def within_one(coords: Array, wrap: str) -> Array:
-    """Bring a coordinate into [0, 1] as a texture repeats, mirrors or ends."""
-    if wrap == "CLAMP_TO_EDGE":
-        return np.clip(coords, 0.0, 1.0)
-    if wrap == "REPEAT":
-        return coords - np.floor(coords)
-    turned = coords - 2.0 * np.floor(0.5 * coords)
-    return np.minimum(turned, 2.0 - turned)
+    @functools.cached_property
+    def largest(self) -> float:
+        """Give the largest number in it, whatever its sign."""
+        return max(float(np.abs(table).max()) for table in self.tables["f8"])

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
-from refcloud.raster.spans import HALF
+from refcloud.raster.spans import HALF, Spans
 from refcloud.raster.window import SUBPIXEL, Places
 
 Indices = NDArray[np.int64]
@@ -66,30 +66,78 @@ def planes_through(x: Places, y: Places, values: Array) -> Planes:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """How depths are kept: a pinhole or not, near, far, and the triangles' planes."""
+    """How depths are kept: a pinhole or not, near and far."""
 
     pinhole: bool
     near: float
     far: float | None
-    planes: Planes
-
-    @functools.cached_property
-    def least(self) -> float:
-        """Give the least of the first numbers, below which rounding must not lead."""
-        value = self.planes.value[0]
-        return float(value.min(initial=1.0))
 
     def depth(self, first: Array) -> Array:
-        """Give what the depth test compares, in [0, 1]."""
+        """Give what the depth test compares, in [0, 1], from 1 / depth or depth."""
         near, far = self.near, self.far
         if self.pinhole:
-            depth = 1.0 - near * first
-            depth = depth if far is None else depth * (far / (far - near))
+            share = 1.0 if far is None else far / (far - near)
+            depth = share - (share * near) * first
         elif far is None:
             depth = np.zeros_like(first)  # never tested
         else:
-            depth = (first - near) / (far - near)
-        return np.clip(depth, 0.0, 1.0)
+            depth = (first - near) * (1.0 / (far - near))
+        return np.clip(depth, 0.0, 1.0, out=depth)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Spans, and what is linear along them.
+
+    Attributes
+    ----------
+    spans
+        Of R stretches of pixels.
+    planes
+        What is linear over the triangles.
+    source, front
+        Which of the mesh's faces each triangle is, and which side of it is seen.
+    view
+        How depths are kept.
+    """
+
+    spans: Spans
+    planes: Planes
+    source: Indices
+    front: NDArray[np.bool_]
+    view: View
+
+    @functools.cached_property
+    def start(self) -> Array:
+        """Give the planes in the middle of column 0 of each span's row, (1 + K, R)."""
+        planes, piece = self.planes, self.spans.triangle
+        x, y = (
+            (HALF - origin[piece]).astype(np.float64) / SUBPIXEL
+            for origin in planes.origin
+        )
+        y += self.spans.row
+        start = self.step * x
+        start += planes.along_y[:, piece] * y
+        start += planes.value[:, piece]
+        return start
+
+    @functools.cached_property
+    def step(self) -> Array:
+        """Give their change from column to column, shape (1 + K, R)."""
+        return self.planes.along_x[:, self.spans.triangle]
+
+    @functools.cached_property
+    def least(self) -> float:
+        """Give the least 1 / depth or depth, below which no rounding must lead."""
+        return float(self.planes.value[0].min(initial=1.0))
+
+    def fragments(self, tolerance: float) -> Fragments:
+        """Give all the pixels of the spans, in their order."""
+        count = self.spans.count
+        span = np.repeat(np.arange(len(count)), count)
+        begin = self.spans.first - (np.cumsum(count) - count)
+        column = np.arange(len(span)) + begin.take(span)
+        return Fragments(self, span, column, tolerance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,123 +146,89 @@ class Fragments:
 
     Attributes
     ----------
-    row, column
+    run, span
+        What they are pixels of, and which stretch of it, shape (n,).
+    column
         Of each pixel, shape (n,).
-    triangle
-        Which of the mesh's faces it belongs to, shape (n,).
-    front
-        Whether that turns its front to the eye, shape (n,).
-    depth
-        What the depth test compares, shape (n,), in [0, 1].
-    view, piece
-        Where the numbers below come from: planes, and which of them.
+    tolerance
+        By how much colours may be off, units of displayed white.
     """
 
-    row: Indices
+    run: Run
+    span: Indices
     column: Indices
-    triangle: Indices
-    front: NDArray[np.bool_]
-    depth: Array
-    view: View
-    piece: Indices
+    tolerance: float
 
-    def of(self, some: Indices) -> Fragments:
+    def of(self, some: Indices | slice) -> Fragments:
         """Give some of them."""
-        return Fragments(
-            self.row[some],
-            self.column[some],
-            self.triangle[some],
-            self.front[some],
-            self.depth[some],
-            self.view,
-            self.piece[some],
-        )
+        part = Fragments(self.run, self.span[some], self.column[some], self.tolerance)
+        for known in ("_first", "_across"):  # where the depth test has asked for them
+            if known in self.__dict__:
+                part.__dict__[known] = self.__dict__[known][some]
+        return part
+
+    @property
+    def row(self) -> Indices:
+        """Give the row of each pixel, shape (n,)."""
+        return self.run.spans.row.take(self.span)
+
+    @property
+    def triangle(self) -> Indices:
+        """Tell which of the mesh's faces each belongs to, shape (n,)."""
+        return self.run.source[self.run.spans.triangle.take(self.span)]
+
+    @property
+    def front(self) -> NDArray[np.bool_]:
+        """Tell whether that turns its front to the eye, shape (n,)."""
+        return self.run.front[self.run.spans.triangle.take(self.span)]
+
+    @functools.cached_property
+    def depth(self) -> Array:
+        """Give what the depth test compares, shape (n,), in [0, 1]."""
+        return self.run.view.depth(self._first)
 
     @functools.cached_property
     def away(self) -> Array:
         """Give the depth along the view axis, scene units, shape (n,)."""
-        first = self._linear[0]
-        return 1.0 / first if self.view.pinhole else first
+        return 1.0 / self._first if self.run.view.pinhole else self._first
 
     @functools.cached_property
     def values(self) -> Array:
         """Give the attributes, perspective-correct, shape (K, n)."""
-        rest = self._linear[1:]
-        return rest * self.away if self.view.pinhole else rest
+        found = np.stack([self._linear(k) for k in range(1, len(self.run.start))])
+        if self.run.view.pinhole:
+            found *= self.away
+        return found
 
     @property
     def along_x(self) -> Array:
         """Give their exact change from a pixel to the next in its row, shape (K, n)."""
-        return self._change(self.view.planes.along_x)
+        return self._change(self.run.step.take(self.span, axis=1))
 
     @property
     def along_y(self) -> Array:
         """Give their exact change from a row to the next below, shape (K, n)."""
-        return self._change(self.view.planes.along_y)
+        piece = self.run.spans.triangle.take(self.span)
+        return self._change(self.run.planes.along_y.take(piece, axis=1))
 
     @functools.cached_property
-    def _linear(self) -> Array:
-        return linear_at(self.view, self.piece, self.row, self.column, slice(None))
+    def _across(self) -> Array:
+        return self.column.astype(np.float64)
+
+    @functools.cached_property
+    def _first(self) -> Array:
+        found = self._linear(0)
+        return np.maximum(found, self.run.least, out=found)
+
+    def _linear(self, k: int) -> Array:
+        """Evaluate a plane at the pixels' centres."""
+        found = self.run.step[k].take(self.span)
+        found *= self._across
+        found += self.run.start[k].take(self.span)
+        return found
 
     def _change(self, slope: Array) -> Array:
         """Differentiate the quotient: (a / q)' = (a' - (a / q) q') / q."""
-        here = slope[:, self.piece]
-        if not self.view.pinhole:
-            return here[1:]
-        return (here[1:] - self.values * here[0]) * self.away
-
-
-def fragments_at(
-    view: View,
-    piece: Indices,
-    row: Indices,
-    column: Indices,
-    triangle: Indices,
-    front: NDArray[np.bool_],
-) -> Fragments:
-    """Make fragments of pixels: all but their attributes, which may never be wanted.
-
-    Parameters
-    ----------
-    view
-        The planes.
-    piece
-        Which of them, shape (n,).
-    row, column, triangle, front
-        As `Fragments`.
-
-    Returns
-    -------
-    The fragments.
-    """
-    depth = view.depth(linear_at(view, piece, row, column, slice(1))[0])
-    return Fragments(row, column, triangle, front, depth, view, piece)
-
-
-def linear_at(
-    view: View, piece: Indices, row: Indices, column: Indices, which: slice
-) -> Array:
-    """Evaluate planes at pixels' centres.
-
-    Parameters
-    ----------
-    view
-        The planes.
-    piece, row, column
-        Of each pixel, shape (n,).
-    which
-        Of the numbers.
-
-    Returns
-    -------
-    Shape (k, n).
-    """
-    planes = view.planes
-    from_x = (column * SUBPIXEL + HALF - planes.origin[0, piece]) / SUBPIXEL
-    from_y = (row * SUBPIXEL + HALF - planes.origin[1, piece]) / SUBPIXEL
-    found = planes.value[which][:, piece]
-    found += planes.along_x[which][:, piece] * from_x
-    found += planes.along_y[which][:, piece] * from_y
-    if which.start in (None, 0):
-        np.maximum(found[0], view.least, out=found[0])
-    return found
+        if not self.run.view.pinhole:
+            return slope[1:]
+        return (slope[1:] - self.values * slope[0]) * self.away
