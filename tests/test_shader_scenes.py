@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ SKIES = {
     "shader-b": shader.solid_sky,
     "shader-c": shader.plane_sky,
     "shader-dome": shader.textured_sky,
+    "shader-poles": partial(shader.textured_sky, surface=Sphere()),
     "shader-volume": shader.volume_sky,
 }
 
@@ -180,6 +182,18 @@ def test_the_bubble_hides_its_far_side() -> None:
     away = np.linalg.norm(mesh.points, axis=1)
     assert 0.58 <= away.min() < 1.0 < away.max() <= 1.42
     assert mesh.attributes.shape == (len(mesh.points), 6)
+
+
+def test_intermediates_can_be_looked_at() -> None:
+    for name, what in (
+        ("shader-dome", "texture"),
+        ("shader-volume", "volume"),
+        ("shader-lit", "transmittance"),
+        ("shader-d", "density"),
+    ):
+        seen: dict = {}
+        drawn(name, observe=seen.__setitem__)
+        assert np.asarray(seen[what]).size > 100
 
 
 def test_what_a_texture_has_no_use_for_is_refused() -> None:
