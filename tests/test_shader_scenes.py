@@ -40,6 +40,14 @@ def test_every_scene_is_a_finite_picture_that_shows_something(name: str) -> None
     assert np.std(light) > 0.05
 
 
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("size", [(1, 1), (7, 5)])
+def test_pictures_of_any_size_and_time(name: str, size: tuple[int, int]) -> None:
+    light = drawn(name, width=size[0], height=size[1], time=-3.3e5).linear
+    assert light.shape == (*size[::-1], 3)
+    assert np.isfinite(light).all()
+
+
 @pytest.mark.parametrize(("name", "draw"), SKIES.items(), ids=list(SKIES))
 def test_skies_by_triangles_look_like_skies_by_rays(name: str, draw) -> None:
     scene = SCENES[name]
