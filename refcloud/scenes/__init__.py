@@ -1,7 +1,17 @@
 """Named scenes: the composed cumulus, and the figures of the documents."""
 
 from refcloud.scene import SCENES, Model, Motion, Scene, View
-from refcloud.scenes import cumulus, demand, demand_hero, demand_plane, man, multiple
+from refcloud.scenes import (
+    cumulus,
+    demand,
+    demand_hero,
+    demand_plane,
+    man,
+    man_net,
+    man_passes,
+    man_plots,
+    multiple,
+)
 
 __all__ = [
     "SCENES",
@@ -14,5 +24,8 @@ __all__ = [
     "demand_hero",
     "demand_plane",
     "man",
+    "man_net",
+    "man_passes",
+    "man_plots",
     "multiple",
 ]
