@@ -11,6 +11,11 @@ from refcloud.scenes import (
     man_passes,
     man_plots,
     multiple,
+    shader,
+    shader_light,
+    shader_objects,
+    shader_particles,
+    simple,
 )
 
 __all__ = [
@@ -28,4 +33,9 @@ __all__ = [
     "man_passes",
     "man_plots",
     "multiple",
+    "shader",
+    "shader_light",
+    "shader_objects",
+    "shader_particles",
+    "simple",
 ]
