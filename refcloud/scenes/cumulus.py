@@ -24,7 +24,7 @@ from refcloud.lighting.look import GROUND_LIGHT, SKY_LIGHT
 from refcloud.metaballs import approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium, Sun
 from refcloud.render import SUN
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.sky import Sky
 from refcloud.transport.plans import PLANS
 
@@ -124,6 +124,7 @@ def draw(model: Model, view: View) -> Picture:
         seed=view.seed,
         observe=view.observe,
         backend=view.backend,
+        kept=view.kept,
     )
 
 
@@ -140,4 +141,17 @@ def camera(view: View) -> Camera:
     return Camera(np.array(EYE), np.array(TARGET), width=view.width, height=view.height)
 
 
-enter(Scene("cumulus", "a cumulus over a field of small clouds", model, draw))
+def eye(model: Model, view: View) -> Camera:
+    """Give the scene's own camera, which knows nothing of its clouds."""
+    return camera(view)
+
+
+enter(
+    Scene(
+        "cumulus",
+        "a cumulus over a field of small clouds",
+        model,
+        draw,
+        Motion(eye, (SUN,)),
+    )
+)
