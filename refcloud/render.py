@@ -32,7 +32,7 @@ from refcloud.march.multiple import Scattering
 from refcloud.march_picture import draw_march
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
-from refcloud.scene import View, find_scene
+from refcloud.scene import Scene, View, find_scene
 from refcloud.sky import Sky
 from refcloud.transport import LightVolume
 
@@ -48,7 +48,7 @@ ONLY_SPLATS = ("look", "backend")
 
 @checked
 def render(
-    cloud: Metaballs | LitMetaballs | VoxelGrid | str,
+    cloud: Metaballs | LitMetaballs | VoxelGrid | Scene | str,
     *,
     camera: Camera | OrthographicCamera | None = None,
     width: Side | None = None,
@@ -82,7 +82,7 @@ def render(
     ----------
     cloud
         Metaballs; balls with their light, of `sunward`, which is then not carried again
-        and brings suns, medium and look; a cloud map; or a scene's name.
+        and brings suns, medium and look; a cloud map; a scene or its name.
     camera
         The eye; None frames the cloud, or takes the scene's own.
     width, height
@@ -146,8 +146,8 @@ def render(
         suns = (suns,)
     width, height = size_of(width, height, quality)
     passes_of(backend)  # refuses here, before the clouds are made
-    if isinstance(cloud, str):
-        scene = find_scene(cloud)
+    if isinstance(cloud, (Scene, str)):
+        scene = find_scene(cloud) if isinstance(cloud, str) else cloud
         refuse_large(width, height)  # before the clouds are made
         _refuse_beside(
             "a scene's name, which brings its own",

@@ -25,7 +25,7 @@ FLOORS = (
     ("lighting", "sky"),
     ("compose", "scene", "noise_pictures", "choices", "scattering_pictures"),
     ("march_picture", "figure"),
-    ("render",),
+    ("render", "declared"),
     ("scenes", "fit_pictures", "animation", "figure_pages"),
     ("bench", "studio"),
     ("cli",),

@@ -60,7 +60,8 @@ def run(words: Sequence[str]) -> int:
     """Animate a cloud and write its frames."""
     given = command().parse(words)
     what = given.arguments[0]
-    name = what if find(what) else Path(what).stem
+    find(what)
+    name = Path(what).stem
     own, chosen = given.of(FRAMES), chosen_of(given)
     if "frames" not in own:
         raise ValueError(complaint("--frames", "how many pictures", "none"))

@@ -22,6 +22,7 @@ COMMANDS = {
     "render": "refcloud.cli.render",
     "figure": "refcloud.cli.figure",
     "animate": "refcloud.cli.animate",
+    "scene": "refcloud.cli.scene",
     "compare": "refcloud.cli.compare",
     "list": "refcloud.cli.scenes",
     "noise": "refcloud.cli.noise",

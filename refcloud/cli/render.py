@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from refcloud.choices import framed
-from refcloud.cli.clouds import denser, describe, find, load
+from refcloud.cli.clouds import denser, describe, find, load, scene_of
 from refcloud.cli.docstrings import parameter_texts, summary
 from refcloud.cli.options import Option, options_of
 from refcloud.cli.outputs import ready, report
@@ -31,6 +31,7 @@ from refcloud.march import Mixing
 from refcloud.metaballs import Levels, Metaballs, choose_level
 from refcloud.refusal import complaint
 from refcloud.render import as_drawn, render
+from refcloud.scenes import Scene
 
 ABOUT = summary(render)
 TEXTS = parameter_texts(render)
@@ -67,7 +68,8 @@ def command() -> Command:
         " WHAT.png",
     )
     made.argument(
-        "WHAT", "a scene (see refcloud list), metaballs or a cloud map (.npz)"
+        "WHAT",
+        "a scene (see refcloud list, or a .toml), metaballs or a cloud map (.npz)",
     )
     add_groups(made, OPTIONS)
     return made
@@ -88,7 +90,8 @@ def run(words: Sequence[str]) -> int:
     """Render a cloud and write its picture."""
     given = command().parse(words)
     what = given.arguments[0]
-    name = what if find(what) else Path(what).stem
+    find(what)
+    name = Path(what).stem
     chosen = chosen_of(given)
     path = ready(given.named(f"{name}.png"), SUFFIXES)
     stages = Stages()
@@ -112,7 +115,7 @@ def chosen_of(given: Given) -> dict[str, Any]:
 
 def prepared(
     given: Given, chosen: Mapping[str, Any], stages: Stages
-) -> tuple[Metaballs | VoxelGrid | str, dict[str, Any], list[str]]:
+) -> tuple[Metaballs | VoxelGrid | Scene, dict[str, Any], list[str]]:
     """Load what is drawn, and put together its camera, suns, medium and mixing.
 
     Parameters
@@ -133,7 +136,7 @@ def prepared(
     size = size_for(chosen)
     suns = suns_for(given.of(SUN), is_scene)
     if is_scene:
-        cloud, notes = what, []
+        cloud, notes = scene_of(what), []
     else:
         with stages.stage("load"):
             cloud = load(what)
@@ -141,7 +144,7 @@ def prepared(
     levels = cloud if isinstance(cloud, Levels) else None
     cloud = cloud.finest if isinstance(cloud, Levels) else cloud
     method = chosen.get("method")
-    shown = None if isinstance(cloud, str) else as_drawn(cloud, method)
+    shown = None if isinstance(cloud, Scene) else as_drawn(cloud, method)
     camera = camera_for(given.of(CAMERA), shown, size)
     scale, mixing = given.of(DENSITY), given.of(MIXING)
     # A factor on the density counts against the file's own optical depth.
@@ -152,7 +155,7 @@ def prepared(
         camera = camera or framed(levels.finest, *size)
         cloud = choose_level(levels, camera, tolerance=chosen["tolerance"])
         notes.append(f"level of {len(cloud)} balls")
-    if not isinstance(cloud, str):
+    if not isinstance(cloud, Scene):
         cloud = denser(cloud, **scale)
     elif scale:
         raise ValueError(complaint("--density", "none beside a scene", "one"))

@@ -71,6 +71,7 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     ],
     "figure": [(Setting, set())],
     "list": [],
+    "scene": [],
     "noise": [(noise_picture, {"kind"})],
     "bench": [(Measurement, set())],
 }
