@@ -146,6 +146,7 @@ ERRATA = {
     "E25": ("eq 28's factor for a whole quad", "modulated by the map; linear or Beer"),
     "E26": ("eq 29's I mixes two things", "light is stored before the phase function"),
     "E27": ("the area that is read back", "disc, square or footprint; what was read"),
+    "E28": ("SkyWorks' up vector, splat colour and map", "not taken over"),
     "E29": ("fog e^-(density - distance) grows", "e^-(density distance)"),
     "E30": ("simplex kernels are said to end in time", "r^2 = 1/2; 0.6 by name"),
     "E31": ("document C's lost lines and faults", "recovered; the faults by name"),
