@@ -120,9 +120,8 @@ def seen_by(
     dark = sum(1 for sun in lit.suns if not sun.irradiance.any())
     if dark:
         skipped.append(Skipped("light", "suns without light", dark, len(lit.suns)))
-    by_extinction = {
-        float(s): _eye_depths(lit, float(s), depth) for s in lit.medium.sigma_t_rgb
-    }
+    extinction = lit.medium.sigma_t_rgb.tolist()
+    by_extinction = {s: _eye_depths(lit, s, depth) for s in dict.fromkeys(extinction)}
     return Seen(
         lit,
         camera,
@@ -130,7 +129,7 @@ def seen_by(
         y,
         radius,
         scale,
-        np.stack([by_extinction[float(s)] for s in lit.medium.sigma_t_rgb]),
+        np.stack([by_extinction[s] for s in extinction]),
         ball_colours(lit, camera),
         clearness(haze, balls.centers, camera),
         np.zeros(3) if haze is None else haze.color,
