@@ -1,9 +1,9 @@
 """The pixels of the light's framebuffer tile by tile: for sweeps within a tolerance.
 
-As `fragments`, but a ball is listed by the tile, at all of its 8 x 8 pixels, whether it
+As `fragments`, but a ball is listed by the tile, at all of its 4 x 4 pixels, whether it
 covers them or not: pairs of ball and tile are far fewer than fragments, nothing is
 sorted or looked up by the pixel, and one small product of matrices, in float32, gives
-a ball's squared distances to 64 pixels (see `quadratics`).
+a ball's squared distances to 16 pixels (see `quadratics`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from refcloud.raster.quadratics import FORMS
 from refcloud.raster.splat import SOFT_EDGE
 from refcloud.raster.tile_lists import Discs, ranges_of, tile_lists
 
-EDGE = 8  # pixels along a tile's edge: balls of a few pixels touch few of them
-TOGETHER = 512  # pairs at a time: they stay in the cache, and products are small ones
+EDGE = 4  # pixels along a tile's edge: balls of a few pixels touch few others
+TOGETHER = 2048  # pairs at a time: they stay in the cache, and products are small ones
 READ = ("footprint", "antialiased")  # means that no rounding makes jump
 
 
