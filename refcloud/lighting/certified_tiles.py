@@ -9,6 +9,8 @@ lies beside it: the margins are those that generated scenes needed.
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from refcloud.conventions import Skipped
@@ -133,7 +135,6 @@ class _Work:
         deepest = np.maximum(np.max(flat.tau, axis=0), 1.0)
         rise = (flat.discs.radius / np.sqrt(deepest))[lists.ball]
         self.rise = np.minimum.reduceat(rise, lists.first)
-        self.samples = Samples(lists.box, 3, groups)
 
     def at_nodes(self, most: float) -> float:
         """Draw tiles of very wide balls at nodes; give the largest error of theirs."""
@@ -159,8 +160,9 @@ class _Work:
         """Draw tiles of wide balls at every second pixel, where that may be enough."""
         steps = self.rise / between.STEP
         wide = (steps >= between.LEAST_RISE) & (GUESS * steps**-2.4 <= most)
-        self.sparse = np.flatnonzero(wide & self.open & self.samples.inside(self.lists))
+        self.sparse = np.flatnonzero(wide & self.open & between.inside(self.lists))
         if len(self.sparse):
+            self.samples = Samples(self.lists.box, 3, len(self.tiles.groups))
             found = self.tiles.at(sampled()[1], self.least, self.sparse)
             self.samples.put(self.lists, self.sparse, found.light, found.clear)
             self.drawn.unseen[self.sparse] = found.unseen
@@ -230,8 +232,7 @@ class _Work:
         """
         keys = uniform(self.lists.row, self.lists.column, seed=0)
         some = np.sort(np.argsort(keys, kind="stable")[:SAMPLE_TILES])
-        order = np.argsort(uniform(np.arange(PIXELS), seed=1), kind="stable")
-        at = order[:SAMPLE_PIXELS]
+        at = _hashed_pixels()
         x, y = pixel_places()
         exact = FlatTiles(self.lists.chosen(some), flat).at((x[at], y[at]), least)
         error = self._of_picture(
@@ -243,6 +244,13 @@ class _Work:
             float(error[whole].max(initial=0.0)),
             float(error[~whole].max(initial=0.0)),
         )
+
+
+@functools.cache
+def _hashed_pixels() -> Whole:
+    """Choose the pixels of a tile that are compared."""
+    order = np.argsort(uniform(np.arange(PIXELS), seed=1), kind="stable")
+    return order[:SAMPLE_PIXELS]
 
 
 def _fits(flat: Flat, most: float) -> bool:

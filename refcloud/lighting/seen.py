@@ -83,6 +83,8 @@ class Seen:
         color = self.colours[:, -1]
         for s in range(self.colours.shape[1] - 1):
             color = color + self.colours[:, s]
+        if (self.clear == 1.0).all():  # no air
+            return color
         return color * self.clear[:, None] + self.air * (1.0 - self.clear)[:, None]
 
     def brightest(self) -> float:
@@ -171,9 +173,9 @@ def shading_of(
     if look.light_reach > 0.0 and shown.any():
         values = seen.colours.reshape(len(seen.colours), -1)
         field = light_field(balls, values, reach=look.light_reach)
-    middling = float(np.median(balls.radii)) if len(balls.radii) else 1.0
-    cell = look.erosion_cell * middling
+    cell = look.erosion_cell
     if look.erosion > 0.0 and shown.any():
+        cell *= float(np.median(balls.radii))
         places = balls.centers[shown]
         reach = balls.radii[shown][:, None] + RISE * cell
         lower, upper = (places - reach).min(axis=0), (places + reach).max(axis=0)

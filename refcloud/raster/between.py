@@ -14,10 +14,12 @@ among them: a tile's edge is like any other place.
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.raster.quadratics import Floats
@@ -58,6 +60,7 @@ def _matrices() -> tuple[Floats, Floats]:
 FROM_ROW, ROW_FOURTH = _matrices()
 
 
+@functools.cache
 def sampled() -> tuple[Whole, tuple[Array, Array]]:
     """Give the numbers of the pixels that are samples, and their places; (64,) each."""
     row, column = np.divmod(np.arange(PIXELS), SIDE)
@@ -84,6 +87,7 @@ class Quarters(NamedTuple):
     moved: tuple[Array, Array]
 
 
+@functools.cache
 def quarters() -> Quarters:
     """Set up a tile's quarters."""
     half = SIDE // 2
@@ -97,6 +101,13 @@ def quarters() -> Quarters:
         (column - middle, row - middle),
         (half * (i - 0.5), half * (j - 0.5)),
     )
+
+
+def inside(lists: TileLists) -> NDArray[np.bool_]:
+    """Tell which tiles have all their neighbours in the box, shape (T,)."""
+    left, right, top, bottom = lists.box
+    across = (lists.column > left) & (lists.column < right - 1)
+    return across & (lists.row > top) & (lists.row < bottom - 1)
 
 
 class Samples:
@@ -120,12 +131,6 @@ class Samples:
         self.plane[lights:] = 1.0
         tiled = self.plane.reshape(channels, down, SAMPLES, across, SAMPLES)
         self.tiles = tiled.transpose(1, 3, 0, 2, 4)  # (down, across, C, 8, 8)
-
-    def inside(self, lists: TileLists) -> np.ndarray:
-        """Tell which tiles have all their neighbours in the box, shape (T,)."""
-        left, right, top, bottom = self.box
-        across = (lists.column > left) & (lists.column < right - 1)
-        return across & (lists.row > top) & (lists.row < bottom - 1)
 
     def put(self, lists: TileLists, which: Whole, *values: Floats) -> None:
         """Write samples of some tiles: light and clear, (T, C, 64) each."""

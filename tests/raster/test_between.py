@@ -16,6 +16,7 @@ from refcloud.raster.between import (
     STEP,
     TOGETHER,
     Samples,
+    inside,
     quarters,
     sampled,
 )
@@ -38,7 +39,7 @@ def between(lists, exact):
     every = np.arange(len(lists.count))
     at = exact[..., sampled()[0]]
     samples.put(lists, every, at[:, :3], at[:, 3:])
-    inner = np.flatnonzero(samples.inside(lists))
+    inner = np.flatnonzero(inside(lists))
     pixels, fourth = samples.between(lists, inner)
     return inner, pixels.transpose(1, 0, 2), fourth
 
