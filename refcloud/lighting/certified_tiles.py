@@ -18,7 +18,7 @@ from refcloud.lighting.flat_tiles import Drawn, Flat, FlatTiles, exact_tiles
 from refcloud.noise import uniform
 from refcloud.raster import between
 from refcloud.raster.between import Samples, quarters, sampled
-from refcloud.raster.nodes import nodes
+from refcloud.raster.nodes import LEAST_RISE, nodes
 from refcloud.raster.quadratics import Floats, cancelling
 from refcloud.raster.tile_lists import PIXELS, TileLists, Whole
 from refcloud.raster.tiles import pixel_places
@@ -28,10 +28,10 @@ LEAST_FLOAT32 = 1e-5
 MOST_FLOAT32 = 1e-4  # of the tolerance's share: nothing is won by more
 NODES = 6  # along a tile's edge, where balls are so wide that these serve
 OF_NODES = 1.0 / 8.0  # of what fewer places may change: tiles beside take some over
-# Nodes are tried where opacity rises within so many of their spacings. Samples, where
-# this over their number to the power of 2.4 is allowed, half the median of estimates in
-# the benchmark's scene. A wrong guess costs time alone.
-LEAST_NODES, GUESS = 16.0, 0.15
+# Nodes are tried where opacity rises within many of their spacings. Samples, where this
+# is allowed over the steps of the rise to the power of 2.4: half the median of the
+# estimates in the benchmark's scenes. A wrong guess costs time alone.
+LEAST_NODES, GUESS = 4.0 * LEAST_RISE, 0.15
 SAMPLE_TILES, SAMPLE_PIXELS = 32, 16  # 512 pixels are compared with the exact method
 SAMPLE_LEAST = 0.01  # what the sample itself may leave out behind an opaque front
 # The largest error of a picture over the largest of its sample: of float32, whose
