@@ -38,10 +38,12 @@ TOGETHER = 96  # tiles at a time: they stay in the cache, and products are small
 HANDED_ON = 1.46
 # A ball's opacity rises within radius / sqrt(tau) from its rim, or within its radius.
 # Where that is less than this many steps, the samples could miss what the pixels show.
-LEAST_RISE = 2.0
+LEAST_RISE = 3.0
 # Of the samples on lines outside a quarter and its edges: 25 + 3 of 256, rounded up.
 FAR = 0.125
-# Largest error of a quarter's pixels over the largest fourth difference there.
+# Largest error of a quarter's pixels over its largest fourth difference. Of errors over
+# 0.001 the worst seen is 0.119, in 32,000 such quarters of 7,000 scenes of all sorts;
+# 0.03 is common.
 PER_FOURTH = 0.14
 
 
