@@ -32,6 +32,7 @@ OF_NODES = 1.0 / 8.0  # of what fewer places may change: tiles beside take some 
 # is allowed over the steps of the rise to the power of 2.4: half the median of the
 # estimates in the benchmark's scenes. A wrong guess costs time alone.
 LEAST_NODES, GUESS = 4.0 * LEAST_RISE, 0.15
+FEW = 10  # balls of a tile, to which filling it up costs more than drawing its pixels
 SAMPLE_TILES, SAMPLE_PIXELS = 32, 16  # 512 pixels are compared with the exact method
 SAMPLE_LEAST = 0.01  # what the sample itself may leave out behind an opaque front
 # The largest error of a picture over the largest of its sample: of float32, whose
@@ -139,7 +140,8 @@ class _Work:
     def at_nodes(self, most: float) -> float:
         """Draw tiles of very wide balls at nodes; give the largest error of theirs."""
         level = nodes(NODES)
-        tried = np.flatnonzero(self.rise >= LEAST_NODES * level.spacing)
+        wide = self.rise >= LEAST_NODES * level.spacing
+        tried = np.flatnonzero(wide & (self.lists.count > FEW))
         if not len(tried):
             return 0.0
         found = self.tiles.at(level.places, self.least, tried)
@@ -160,6 +162,7 @@ class _Work:
         """Draw tiles of wide balls at every second pixel, where that may be enough."""
         steps = self.rise / between.STEP
         wide = (steps >= between.LEAST_RISE) & (GUESS * steps**-2.4 <= most)
+        wide &= self.lists.count > FEW
         self.sparse = np.flatnonzero(wide & self.open & between.inside(self.lists))
         if len(self.sparse):
             self.samples = Samples(self.lists.box, 3, len(self.tiles.groups))
