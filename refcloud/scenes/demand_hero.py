@@ -9,6 +9,7 @@ the picture shows it: a voxel is some two pixels.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import time
 from typing import NamedTuple
@@ -16,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from refcloud.camera import AnyCamera, Camera, OrthographicCamera, axes
-from refcloud.cloudmap import billows
+from refcloud.cloudmap import VoxelGrid, billows
 from refcloud.compose import merged
 from refcloud.conventions import WHOLE_SPHERE, Array, Skipped
 from refcloud.image import Picture
@@ -35,6 +36,9 @@ SUN = Sun(
 MEDIUM = Medium(1.5, 1.0, 0.6, "hg")
 VOXEL_PIXELS = 2.0  # of a picture, where the cloud is
 FINEST, COARSEST = 0.22, 1.6  # scene units of the cloud's own
+KEPT_FROM = (
+    0.8  # voxels of small pictures: a map of 2 MB takes longer to make than draw
+)
 
 
 class Placed(NamedTuple):
@@ -72,7 +76,10 @@ def draw(model: Model, view: View) -> Picture:
     for placed in clouds:
         start = time.perf_counter()
         voxel = fineness(camera, placed)
-        grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
+        if voxel < KEPT_FROM or view.observe is not None:
+            grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
+        else:
+            grid = coarse_billows(placed.seed, voxel)
         middle = time.perf_counter()
         L, T, rows = octave_march(
             grid,
@@ -96,6 +103,12 @@ def draw(model: Model, view: View) -> Picture:
         voxels = np.count_nonzero(grid.density)
         notes.append(f"{what}: {voxels} voxels of {voxel:.2g}")
     return Picture(light, None, merged(skipped), seconds, tuple(notes))
+
+
+@functools.lru_cache(maxsize=2 * (len(FIELD) + 1))
+def coarse_billows(seed: int, voxel: float) -> VoxelGrid:
+    """Make a coarse cloud map once: small pictures are drawn many times."""
+    return billows(seed=seed, voxel=voxel)
 
 
 def fineness(camera: AnyCamera, placed: Placed) -> float:

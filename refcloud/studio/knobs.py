@@ -137,7 +137,8 @@ def _way(kind: Any, start: Any, beside: bool) -> dict[str, Any]:
     limits = mark(kind, Range) or PLAIN
     near = np.abs(np.asarray(start, float)).max() if _is_number(start) else 1.0
     low, high = slider_ends(limits, float(near), whole=base is int)
-    colour = beside or limits.unit.startswith("radiance")
+    colour = limits.unit.startswith("radiance")
+    colour = colour or (beside and limits.unit != "scene units")
     names = {int: "whole", float: "number"}
     labels = {"whole": "a number", "number": "a number", "colour": "red, green, blue"}
     shown = names.get(base, "colour" if colour else "vector")

@@ -18,6 +18,7 @@ from refcloud.optics import Medium, Sun
 from refcloud.render import render
 from refcloud.scene import SCENES, Model, Scene, View, find_scene
 from refcloud.scenes import cumulus, demand, demand_hero, man, multiple
+from refcloud.studio.glimpse import glimpse_of_multiple
 from refcloud.studio.knobs import Group, group_of, plain
 from refcloud.studio.recipe import Call, Recipe, Stage
 from refcloud.studio.setups import (
@@ -183,7 +184,10 @@ def scene_recipe(
             if values["look"] is None:
                 look = Call("rc.Look", Look, (), groups["look"].start)
             call = call.but(look=look.but(**COARSE_LOOK))
-    return Recipe((Stage("picture", call),), saving(values))
+    rough = None
+    if name == "multiple":  # solving takes a second, however small the picture
+        rough = Call("glimpse_of_multiple", glimpse_of_multiple, (), call.keywords)
+    return Recipe((Stage("picture", call, rough),), saving(values))
 
 
 def is_moved(group: Group, values: Values) -> bool:

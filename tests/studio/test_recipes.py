@@ -184,6 +184,17 @@ def test_starting_values_of_scenes_are_their_own() -> None:
         assert np.allclose(alone.linear, other.linear, atol=1e-6)
 
 
+def test_coarse_clouds_that_are_kept_give_the_same_bits() -> None:
+    small = {"width": 24, "height": 18, "tolerance": 1 / 255}
+    first, again = (rc.render("demand", **small) for _ in range(2))
+    # An observer sees the clouds made, so they are made.
+    seen: list[str] = []
+    made = rc.render("demand", **small, observe=lambda name, value: seen.append(name))
+    assert "layers" in seen
+    assert np.array_equal(first.linear, again.linear)
+    assert np.array_equal(first.linear, made.linear)
+
+
 def test_scenes_that_nobody_knows_yet_are_offered_with_all_parts() -> None:
     seen: list[View] = []
 

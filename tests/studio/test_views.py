@@ -11,7 +11,7 @@ from refcloud.lighting.lightview import light_view
 from refcloud.studio import box_picture, setups
 from refcloud.studio.box import step_of
 from refcloud.studio.counts import balls_per_pixel, steps_per_pixel
-from refcloud.studio.glimpse import glimpse
+from refcloud.studio.glimpse import glimpse, glimpse_of_multiple
 from refcloud.studio.recipe import Kept
 from refcloud.studio.setups import frame_of
 from refcloud.studio.views import GAIN, VIEWS, Request, heat, shown
@@ -159,6 +159,14 @@ def test_a_glimpse_is_near_the_picture() -> None:
     off = np.abs(rough.linear - exact.linear)
     # One sample for a voxel; worst seen .2 in a pixel and .02 in the mean.
     assert off.mean() < 0.04
+
+
+def test_a_glimpse_of_multiple_scattering_is_as_bright_as_the_scene() -> None:
+    camera = rc.scenes.cumulus.camera(rc.scenes.View(16, 12))
+    rough = glimpse_of_multiple(width=16, height=12)
+    exact = rc.render("multiple", camera=camera, tolerance=0.05)
+    off = np.abs(rough.linear - exact.linear).mean()
+    assert off < 0.15, "octaves of scattering are a guess; single scattering is .4 off"
 
 
 def test_a_box_without_frame_is_the_march_before_the_sky() -> None:
