@@ -13,7 +13,7 @@ import numpy as np
 
 from refcloud.checking import check
 from refcloud.conventions import Array, Range
-from refcloud.parameters import MISSING, Option, base_of, mark, options_of
+from refcloud.parameters import MISSING, Option, base_of, mark, options_of, size_of
 from refcloud.refusal import complaint
 
 # Where a slider ends when the annotation has no near end: so many times the start.
@@ -144,7 +144,8 @@ def _way(kind: Any, start: Any, beside: bool) -> dict[str, Any]:
     shown = names.get(base, "colour" if colour else "vector")
     return {
         "kind": shown,
-        "label": labels.get(shown, "three numbers"),
+        "label": labels.get(shown, "number by number"),
+        "size": size_of(kind),
         "range": str(limits),
         "unit": "" if limits.unit == "1" else limits.unit,
         "from": low,
