@@ -130,7 +130,7 @@ def _readback(request: Request, kept: Kept) -> Shown:
     codes = (codes * 0.6).astype(np.uint8)
     chosen = view.order[:: max(len(view.order) // RINGS, 1)]
     outer = discs(view.x[chosen], view.y[chosen], view.radius[chosen], SIDE, SIDE)
-    colours = heat(np.linspace(0.15, 1.0, max(len(chosen), 1)))
+    colours = heat(np.linspace(0.4, 1.0, max(len(chosen), 1)))
     for k, (window, inside) in enumerate(outer):
         core = inside.copy()
         core[1:-1, 1:-1] &= inside[:-2, 1:-1] & inside[2:, 1:-1]
