@@ -20,6 +20,7 @@ from refcloud.cli.clouds import denser
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
 from refcloud.cli.figure import Setting
+from refcloud.cli.studio import Page
 from refcloud.conventions import Range
 from refcloud.march import Mixing
 from refcloud.noise_pictures import noise_picture
@@ -74,6 +75,7 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "scene": [],
     "noise": [(noise_picture, {"kind"})],
     "bench": [(Measurement, set())],
+    "studio": [(Page, set())],
 }
 RENAMED = {"direction": "sun"}
 OWN_DEFAULTS = {
