@@ -16,6 +16,7 @@ from refcloud.checking import complaint
 from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
+from refcloud.lighting.hidden import touches
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
@@ -98,6 +99,9 @@ def draw_layers(
     for layer in layers:
         share = tolerance / len(layers)
         lit = layer.lit
+        if not touches(layer.balls, camera):
+            skipped += _unseen(layer, suns)
+            continue
         if lit is None:
             lit = light_pass(
                 layer.balls,
@@ -127,6 +131,18 @@ def draw_layers(
     if reused:
         notes = (*notes, f"light: reused for {reused} of {len(layers)} clouds")
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
+
+
+def _unseen(layer: Layer, suns: tuple[Sun, ...]) -> list[Skipped]:
+    """Report a cloud of which no ball touches the picture: neither pass is run."""
+    if not len(layer.balls):
+        return []
+    count, rows = len(layer.balls), []
+    if layer.lit is None:
+        lights = len(suns) + 2  # sky and ground
+        what = "lights of clouds off the picture"
+        rows.append(Skipped("light", what, lights, lights))
+    return [*rows, Skipped("eye", "balls off the picture", count, count)]
 
 
 def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:

@@ -11,7 +11,7 @@ from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer
 from refcloud.march.glow import glow
-from refcloud.march.marched import Marched, marched
+from refcloud.march.marched import Marched, marched, without_dark
 from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
@@ -120,6 +120,7 @@ def lit_for(
     tolerance: float,
 ) -> ScatteredLight:
     """Solve a cloud's light, or see that what was solved is of this cloud."""
+    suns, _ = without_dark(suns, medium)
     if not isinstance(scattering, ScatteredLight):
         return scattered_light(
             cloud,
@@ -130,6 +131,7 @@ def lit_for(
             tolerance=0.5 * tolerance,
         )
     light = scattering
+    solved, _ = without_dark(light.suns, light.medium)
     same = (
         (light.grid is cloud or np.array_equal(light.grid.density, cloud.density))
         and np.array_equal(light.grid.lower, cloud.lower)
@@ -137,11 +139,11 @@ def lit_for(
         and np.array_equal(light.medium.sigma_t_rgb, medium.sigma_t_rgb)
         and np.array_equal(light.medium.albedo_rgb, medium.albedo_rgb)
         and (light.medium.g, light.medium.phase) == (medium.g, medium.phase)
-        and len(light.suns) == len(suns)
+        and len(solved) == len(suns)
         and all(
             np.array_equal(a.direction, b.direction)
             and np.array_equal(a.irradiance, b.irradiance)
-            for a, b in zip(light.suns, suns, strict=True)
+            for a, b in zip(solved, suns, strict=True)
         )
     )
     if not same:
