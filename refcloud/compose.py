@@ -7,21 +7,34 @@ import importlib
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from refcloud.camera import AnyCamera
+from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import complaint
 from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.image import Picture
-from refcloud.lighting import Haze, LitMetaballs, Look, eyeward, sunward
+from refcloud.lighting import (
+    Haze,
+    LitMetaballs,
+    Look,
+    eyeward,
+    lit_by_solution,
+    solved_light,
+    sunward,
+)
 from refcloud.lighting.hidden import touches
+from refcloud.lighting.solved import Lights
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
+from refcloud.transport import ScatteredLight
+from refcloud.transport.plans import GradeName, Plan
+from refcloud.transport.scattering import report_of
 
 LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
+FAR = 1e6  # widths of a cloud: from there all of it is seen along one direction
 
 
 def passes_of(
@@ -46,6 +59,8 @@ class Layer:
     """One cloud of a composed picture: its balls and what they are made of.
 
     Where the balls' light is known already, `lit` brings it, and pass 1 is left out.
+    With scattering "multiple" their light is solved (`solved_light`, by `plan` if one
+    is named), or it was solved before.
     """
 
     balls: Metaballs
@@ -53,6 +68,8 @@ class Layer:
     look: Look
     haze: Haze | None = None
     lit: LitMetaballs | None = None
+    scattering: Literal["single", "multiple"] | Lights = "single"
+    plan: Plan | GradeName | None = None
 
 
 def draw_layers(
@@ -65,6 +82,7 @@ def draw_layers(
     seed: int = 0,
     observe: Observer | None = None,
     backend: Backend = "numpy",
+    kept: dict[Any, Any] | None = None,
 ) -> Picture:
     """Draw clouds one over the other, the farthest first; each is lit by itself.
 
@@ -82,6 +100,9 @@ def draw_layers(
         Largest error of a channel; every layer gets an equal share.
     seed, observe, backend
         As `render`.
+    kept
+        Each layer's light by its number: what an earlier call put there is taken again
+        where it still holds, the rest is put there.
 
     Returns
     -------
@@ -93,15 +114,20 @@ def draw_layers(
     behind = painted(background, camera, suns)
     clock.stop("sky")
     skipped: list[Skipped] = []
+    solved: list[ScatteredLight] = []
     rgba = np.zeros((camera.height, camera.width, 4))
     if behind is not None:
         rgba[..., :3], rgba[..., 3] = behind, 1.0
-    for layer in layers:
+    kept = {} if kept is None else kept
+    for number, layer in enumerate(layers):
         share = tolerance / len(layers)
         lit = layer.lit
         if not touches(layer.balls, camera):
             skipped += _unseen(layer, suns)
             continue
+        if layer.scattering != "single":
+            lit, lights = solved_layer(layer, suns, camera, LIGHT * share, observe)
+            solved += lights
         if lit is None:
             lit = light_pass(
                 layer.balls,
@@ -109,8 +135,10 @@ def draw_layers(
                 medium=layer.medium,
                 look=layer.look,
                 tolerance=LIGHT * share,
+                earlier=kept.get(number),
                 observe=observe,
             )
+            kept.setdefault(number, lit)
         clock.stop("light")
         drawn, rows = eye_pass(
             lit,
@@ -130,6 +158,8 @@ def draw_layers(
     reused = sum(layer.lit is not None for layer in layers)
     if reused:
         notes = (*notes, f"light: reused for {reused} of {len(layers)} clouds")
+    if solved:
+        notes = (*notes, f"scattered light: {report_of(solved)}")
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
 
 
@@ -143,6 +173,31 @@ def _unseen(layer: Layer, suns: tuple[Sun, ...]) -> list[Skipped]:
         what = "lights of clouds off the picture"
         rows.append(Skipped("light", what, lights, lights))
     return [*rows, Skipped("eye", "balls off the picture", count, count)]
+
+
+def solved_layer(
+    layer: Layer,
+    suns: tuple[Sun, ...],
+    camera: AnyCamera,
+    tolerance: float,
+    observe: Observer | None,
+) -> tuple[LitMetaballs, tuple[ScatteredLight, ...]]:
+    """Solve a layer's light, or take what was solved, and light the balls by it."""
+    lights = layer.scattering
+    if isinstance(lights, str):
+        how = {"plan": layer.plan, "tolerance": tolerance}
+        lights = solved_light(
+            layer.balls, suns, medium=layer.medium, look=layer.look, **how
+        )
+    if observe is not None:
+        observe("scattered light", lights)
+    eye = camera.eye
+    if not isinstance(camera, Camera):
+        around = np.concatenate([layer.balls.centers, camera.target[None]])
+        width = max(float(np.ptp(around, axis=0).max()), 1.0)
+        eye = camera.target + FAR * width * axes(camera)[2]
+    lit = lit_by_solution(layer.balls, lights, eye=eye, look=layer.look)
+    return lit, lights if isinstance(lights, tuple) else (lights,)
 
 
 def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:

@@ -26,12 +26,13 @@ from refcloud.conventions import (
 from refcloud.image import Picture
 from refcloud.lighting import Haze, LitMetaballs, Look, named
 from refcloud.lighting.look import LookName
+from refcloud.lighting.solved import brought_by
 from refcloud.march import Mixing
 from refcloud.march.multiple import Scattering
 from refcloud.march_picture import draw_march
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
-from refcloud.scene import View, find_scene
+from refcloud.scene import Scene, View, find_scene
 from refcloud.sky import Sky
 from refcloud.transport import LightVolume
 
@@ -47,7 +48,7 @@ ONLY_SPLATS = ("look", "backend")
 
 @checked
 def render(
-    cloud: Metaballs | LitMetaballs | VoxelGrid | str,
+    cloud: Metaballs | LitMetaballs | VoxelGrid | Scene | str,
     *,
     camera: Camera | OrthographicCamera | None = None,
     width: Side | None = None,
@@ -62,7 +63,7 @@ def render(
     haze: Haze | None = None,
     look: Look | LookName | None = None,
     method: Method | None = None,
-    scattering: Scattering = "single",
+    scattering: Scattering | None = None,
     ambient: Colour | None = None,
     mixing: Mixing | None = None,
     tolerance: Tolerance = 0.0,
@@ -81,7 +82,7 @@ def render(
     ----------
     cloud
         Metaballs; balls with their light, of `sunward`, which is then not carried again
-        and brings suns, medium and look; a cloud map; or a scene's name.
+        and brings suns, medium and look; a cloud map; a scene or its name.
     camera
         The eye; None frames the cloud, or takes the scene's own.
     width, height
@@ -104,9 +105,10 @@ def render(
         "splat" draws balls in two passes, a cloud map as one ball per occupied voxel;
         "march" follows rays. None splats metaballs and marches cloud maps.
     scattering
-        How often light that is marched is scattered: "single" is once, "multiple" is
-        every order, solved first (`refcloud.transport.scattered_light`); or that light,
-        solved before, for another eye.
+        How often light is scattered: "single" is once along marched rays, and once from
+        ball to ball for splats; "multiple" is every order, solved first. Or that light,
+        which an earlier call handed to its `observe` as "scattered light", for another
+        eye: it brings suns and medium. None for "single", or the scene's own.
     ambient
         Radiance that reaches a marched cloud from all sides alike, RGB; None for the
         mean of a clear sky and the ground.
@@ -144,8 +146,8 @@ def render(
         suns = (suns,)
     width, height = size_of(width, height, quality)
     passes_of(backend)  # refuses here, before the clouds are made
-    if isinstance(cloud, str):
-        scene = find_scene(cloud)
+    if isinstance(cloud, (Scene, str)):
+        scene = find_scene(cloud) if isinstance(cloud, str) else cloud
         refuse_large(width, height)  # before the clouds are made
         _refuse_beside(
             "a scene's name, which brings its own",
@@ -154,10 +156,12 @@ def render(
             method=method,
             ambient=ambient,
             mixing=mixing,
-            scattering=None if scattering == "single" else scattering,
             volumes=volumes or None,
         )
-        how = tolerance, seed, observe, backend
+        if not (scattering is None or isinstance(scattering, str)):
+            expected = "single or multiple beside a scene"
+            raise ValueError(complaint("scattering", expected, "solved light"))
+        how = tolerance, seed, observe, backend, scattering
         view = View(width, height, camera, suns, medium, look, *how)
         model = scene.model()
         picture = scene.draw(model, view)
@@ -171,7 +175,14 @@ def render(
     lit = None
     if isinstance(cloud, LitMetaballs):
         whose = "lit balls, which bring their own"
-        _refuse_beside(whose, suns=suns, medium=medium, look=look, method=method)
+        _refuse_beside(
+            whose,
+            suns=suns,
+            medium=medium,
+            look=look,
+            method=method,
+            scattering=scattering,
+        )
         lit, suns, medium, look = cloud, cloud.suns, cloud.medium, cloud.look
         cloud = lit.balls
     march = is_marched(cloud, method)
@@ -183,10 +194,9 @@ def render(
         mixing=mixing,
         volumes=volumes or None,
     )
-    if scattering != "single" and not march:
-        expected = "single beside the method splat"
-        advice = "march a cloud map, or light balls by lighting.lit_by_solution"
-        raise ValueError(complaint("scattering", expected, "other", advice))
+    scattering = "single" if scattering is None else scattering
+    if not isinstance(scattering, str):
+        suns, medium = brought_by(scattering, suns, medium)
     drawn = as_drawn(cloud, method)
     if drawn is not cloud and isinstance(drawn, Metaballs):
         notes.append(f"drawn as one ball per occupied voxel: {len(drawn)} balls")
@@ -225,7 +235,7 @@ def render(
         assert isinstance(drawn, Metaballs)
         assert rules is not None
         picture = draw_layers(
-            [Layer(drawn, medium, rules, haze, lit)],
+            [Layer(drawn, medium, rules, haze, lit, scattering)],
             camera,
             lights,
             behind,

@@ -220,7 +220,11 @@ def test_the_hero_stands_over_its_field() -> None:
         demand_hero.cumulus.EYE, demand_hero.cumulus.TARGET, width=48, height=36
     )
     picture = drawn("", View(48, 36, camera))
-    assert [note.split(":")[0] for note in picture.notes] == ["field"] * 5 + ["cloud"]
+    assert [note.split(":")[0] for note in picture.notes] == [
+        *["field"] * 5,
+        "cloud",
+        "scattered light",
+    ]
     assert set(picture.seconds) == {"sky", "generate", "march"}
     whites = (picture.linear.min(axis=2) > 0.4).mean(axis=1)
     assert not whites[:6].any(), "clear sky above"
@@ -265,3 +269,19 @@ def test_an_own_camera_sees_the_box_from_anywhere() -> None:
         picture = drawn("box", View(9, 9, camera))
         assert picture.linear.shape == (24, 32, 3)
         assert np.isfinite(picture.linear).all()
+
+
+def test_the_hero_may_be_lit_in_octaves() -> None:
+    """So it is where that is said, and in a medium that the solution does not model."""
+    tinted = Medium(1.5, [1.0, 0.9, 0.8], 0.6, "hg")
+    for view in (
+        View(24, 18, scattering="single", tolerance=0.1),
+        View(24, 18, medium=tinted, tolerance=0.1),
+    ):
+        assert not any("scattered" in note for note in drawn("", view).notes)
+
+
+def test_figures_of_document_d_refuse_solved_light() -> None:
+    for name in FLAT + BOXED:
+        with pytest.raises(ValueError, match=r"^scattering: expected "):
+            drawn(name, dataclasses.replace(VIEW, scattering="multiple"))

@@ -333,7 +333,20 @@ def test_voxels_too_coarse_for_their_depth_are_told() -> None:
         ),
         (lambda: render("man-10", method="march"), "method: expected none beside a"),
         (lambda: render(GRID, scattering="twice"), "scattering: expected one of"),
-        (lambda: render(BALLS, scattering="multiple"), "scattering: expected single"),
+        (
+            lambda: render(BALLS, scattering="multiple", look="man"),
+            "look: expected a look whose depths",
+        ),
+        (
+            lambda: render(
+                BALLS, scattering="multiple", medium=Medium([1.0, 2.0, 3.0])
+            ),
+            "light: expected light in a medium",
+        ),
+        (
+            lambda: render("demand-sky", scattering="multiple"),
+            "scattering: expected none beside a picture of the plane",
+        ),
     ],
 )
 def test_what_a_method_has_no_use_for_is_refused(call, message) -> None:

@@ -6,9 +6,12 @@ from refcloud.bench.approximate import APPROXIMATE
 from refcloud.bench.march import MARCH
 from refcloud.bench.noise import NOISE
 from refcloud.bench.scattering import SCATTERING
+from refcloud.bench.skies import SKIES
 from refcloud.bench.splat import SPLAT
 from refcloud.bench.subject import Subject
+from refcloud.bench.triangles import TRIANGLES
 
 SUBJECTS: dict[str, Subject] = {
-    subject.name: subject for subject in (NOISE, APPROXIMATE, SPLAT, MARCH, SCATTERING)
+    subject.name: subject
+    for subject in (NOISE, APPROXIMATE, SPLAT, MARCH, SCATTERING, TRIANGLES, SKIES)
 }

@@ -10,32 +10,47 @@ from refcloud.cli.generate import describe as described_grid
 from refcloud.cloudmap import VoxelGrid, load_voxels
 from refcloud.cloudmap.file import FORMAT as VOXELS
 from refcloud.conventions import Range
+from refcloud.declared import load_scene, scene_from
 from refcloud.files import read_arrays
 from refcloud.metaballs import Levels, Metaballs, load_levels, load_metaballs
 from refcloud.metaballs.file import FORMAT as METABALLS
 from refcloud.metaballs.levels_file import FORMAT as LEVELS
 from refcloud.refusal import complaint
-from refcloud.scenes import SCENES
+from refcloud.scenes import SCENES, Scene
 
 ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
 NO_NUMBERS = 1
+TOML = ".toml"
 
 
 def find(what: str) -> bool:
-    """Tell a scene (True) from a file (False), or refuse what is neither.
+    """Tell a scene (True) from a cloud's file (False), or refuse what is neither.
 
     Raises
     ------
     ValueError
         No scene has that name, and it does not look like a file.
     """
-    if what in SCENES:
-        return True
     path = Path(what)
+    if what in SCENES or path.suffix == TOML:
+        return True
     if path.suffix != ".npz" and not path.exists():
-        expected = "a file (.npz) or one of the scenes " + ", ".join(sorted(SCENES))
+        expected = "a file (.npz, .toml) or one of the scenes " + ", ".join(
+            sorted(SCENES)
+        )
         raise ValueError(complaint("WHAT", expected, repr(what[:60])))
     return False
+
+
+def scene_of(what: str) -> Scene:
+    """Give the scene of a name, or of a file that declares one.
+
+    Raises
+    ------
+    FileNotFoundError, TypeError, ValueError
+        There is no such file, or what it says does not fit.
+    """
+    return SCENES[what] if what in SCENES else scene_from(load_scene(what))
 
 
 def load(path: str) -> Metaballs | VoxelGrid | Levels:

@@ -20,10 +20,14 @@ COMMANDS = {
     "generate": "refcloud.cli.generate",
     "approximate": "refcloud.cli.approximate",
     "render": "refcloud.cli.render",
+    "figure": "refcloud.cli.figure",
+    "animate": "refcloud.cli.animate",
+    "scene": "refcloud.cli.scene",
     "compare": "refcloud.cli.compare",
     "list": "refcloud.cli.scenes",
     "noise": "refcloud.cli.noise",
     "bench": "refcloud.cli.bench",
+    "studio": "refcloud.cli.studio",
 }
 BAD_INPUT = 2
 # As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE).

@@ -17,7 +17,8 @@ from refcloud.lighting.octaves import (
 )
 from refcloud.lighting.order import depth_order
 from refcloud.lighting.shining import march_shining
-from refcloud.lighting.solved import lit_by_solution
+from refcloud.lighting.solved import lit_by_solution, solved_light
+from refcloud.lighting.solved_march import block_means, solved_march
 from refcloud.lighting.sunward import sunward
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "Look",
     "Octaves",
     "ball_colours",
+    "block_means",
     "depth_order",
     "detail_grid",
     "eroded",
@@ -44,5 +46,7 @@ __all__ = [
     "octave_march",
     "octave_source",
     "sky_source",
+    "solved_light",
+    "solved_march",
     "sunward",
 ]

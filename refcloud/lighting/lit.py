@@ -33,6 +33,9 @@ class LitMetaballs:
         The rules that carried the light.
     skipped
         What a tolerance left out in carrying it.
+    glow
+        Radiance that each sun's light adds after it was scattered before, toward the
+        eye that it was solved for, shape (S, N, 3); None for none.
     """
 
     balls: Metaballs
@@ -42,6 +45,9 @@ class LitMetaballs:
     medium: Medium
     look: Look
     skipped: tuple[Skipped, ...] = ()
+    glow: Annotated[Array, Shape("S", "N", 3), Range(0.0, unit="radiance")] | None = (
+        None
+    )
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -50,4 +56,9 @@ class LitMetaballs:
             raise ValueError(
                 f"light: expected shape {(*expected, 3)} for these suns and balls,"
                 f" got {self.light.shape} with ambient of shape {self.ambient.shape}"
+            )
+        if self.glow is not None and self.glow.shape != self.light.shape:
+            raise ValueError(
+                f"glow: expected shape {self.light.shape}, that of light,"
+                f" got {self.glow.shape}"
             )

@@ -112,7 +112,7 @@ def octave_march(
     )
 
     # 2. The color of each sample that has cloud beside it, toward the eye.
-    k, j, i = np.nonzero(_beside(cloud))
+    k, j, i = np.nonzero(beside(cloud))
     for first in range(0, len(k), CHUNK):
         where = (
             k[first : first + CHUNK],
@@ -120,7 +120,7 @@ def octave_march(
             i[first : first + CHUNK],
         )
         colors = np.zeros((len(where[0]), 3))
-        seen = _seen_along(grid, camera, where)
+        seen = seen_along(grid, camera, where)
         for sun, column in zip(lit, toward, strict=True):
             cosines = np.clip(seen @ sun.direction, -1.0, 1.0)
             tau = sigma_t * column[where].astype(np.float64)
@@ -161,7 +161,7 @@ def _by_channel(cosines: Array, tau: Array, medium: Medium, octaves: Octaves) ->
     return np.stack([found[albedo] for albedo in albedos], axis=-1)
 
 
-def _beside(cloud: Shining) -> np.ndarray:
+def beside(cloud: Shining) -> np.ndarray:
     """Find the samples that a place with extinction around it reads, (D, H, W)."""
     beside = np.zeros(tuple(n - 1 for n in cloud.occupied.shape), bool)
     for corner in itertools.product((0, 1), repeat=3):
@@ -170,7 +170,7 @@ def _beside(cloud: Shining) -> np.ndarray:
     return beside
 
 
-def _seen_along(
+def seen_along(
     grid: VoxelGrid, camera: Camera | OrthographicCamera, where: tuple
 ) -> Array:
     """Give the direction in which the eye sees samples, unit vectors (N, 3)."""

@@ -61,7 +61,8 @@ def same_lights(
     sees of them, the phase function, does not count.
     """
     if earlier is None or not (
-        same(earlier.balls, balls, but=("skipped",))
+        earlier.glow is None  # what was solved was not carried
+        and same(earlier.balls, balls, but=("skipped",))
         and same(earlier.medium, medium, but=("phase", "g"))
         and same(earlier.look, look)
     ):

@@ -8,7 +8,7 @@ from typing import NoReturn
 import numpy as np
 
 from refcloud.camera import AnyCamera
-from refcloud.cloudmap import VoxelGrid, cell_size
+from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.march.balls import exact_balls
 from refcloud.march.cells import lattice
@@ -20,6 +20,7 @@ from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 from refcloud.transport import LightVolume
+from refcloud.transport.cut_out import thickest_voxel
 
 # Optical depth of one voxel above which the answer of `tolerance=0` itself is off by
 # more than a ten-thousandth of white: shadows are sharper than the Gauss points.
@@ -194,15 +195,9 @@ def _refuse_depth() -> NoReturn:
     raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
 
 
-def steepest(grid: VoxelGrid, medium: Medium) -> float:
-    """Give the largest optical depth of one voxel, along its longest edge."""
-    densest = float(grid.density.max()) * float(cell_size(grid).max())
-    return float(np.max(medium.sigma_t)) * densest
-
-
 def steep_note(grid: VoxelGrid, medium: Medium) -> tuple[str, ...]:
     """Note a cloud map whose voxels are too coarse for its optical depth."""
-    tau = steepest(grid, medium)
+    tau = thickest_voxel(grid, medium)
     if tau <= STEEPEST:
         return ()
     return (

@@ -11,14 +11,15 @@ from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer
 from refcloud.march.glow import glow
-from refcloud.march.marched import Marched, marched, without_dark
+from refcloud.march.marched import Marched, marched
 from refcloud.march.mixing import PHYSICAL, Mixing
-from refcloud.metaballs import Metaballs
+from refcloud.metaballs import Metaballs, sampled_map
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 from refcloud.transport import LightVolume, ScatteredLight, scattered_light
+from refcloud.transport.scattering import report_of
 
-Scattering = Literal["single", "multiple"] | ScatteredLight
+Scattering = Literal["single", "multiple"] | ScatteredLight | tuple[ScatteredLight, ...]
 
 
 def marched_multiple(
@@ -56,16 +57,12 @@ def marched_multiple(
     -------
     What was found; the transmittance is the true one.
     """
-    if not isinstance(cloud, VoxelGrid):
-        expected = "single for metaballs, whose light is not solved"
-        advice = (
-            "march a cloud map, or light balls by refcloud.lighting.lit_by_solution"
-        )
-        raise ValueError(complaint("scattering", expected, "other", advice))
     if mixing != PHYSICAL:
         expected = "none beside scattering multiple, whose light is solved without them"
         raise ValueError(complaint("mixing", expected, "one"))
-    light = lit_for(cloud, suns, medium, ambient, scattering, tolerance)
+    # Light among balls is solved in a map of their density.
+    grid = cloud if isinstance(cloud, VoxelGrid) else sampled_map(cloud)
+    light = lit_for(grid, suns, medium, ambient, scattering, tolerance)
     if observe is not None:
         observe("scattered light", light)
     # 1. Light that was scattered once, exactly, its ways dimmed by sigma' alone.
@@ -94,7 +91,7 @@ def marched_multiple(
         shape=shape,
     )
     # 2. Light that was scattered more often.
-    radiance = found.radiance + glow(cloud, origins, directions, light, tolerance)
+    radiance = found.radiance + glow(grid, origins, directions, light, tolerance)
     # 3. What is seen through the cloud; outside light of the forward peak goes with it.
     through = found.transmittance ** (kept[:1] if grey else kept)
     if ambient is not None:
@@ -103,11 +100,7 @@ def marched_multiple(
         radiance = radiance + through * background
     if np.ndim(medium.sigma_t) == 0:
         through = through[:, :1]
-    D, H, W = light.shape
-    sweeps = " + ".join(str(count) for count in light.iterations)
-    state = "" if light.converged else f"; not converged, residual {light.residual:.2g}"
-    note = f"scattered light: {sweeps} sweeps, voxels {W} x {H} x {D}{state}"
-    notes = (*found.notes, note)
+    notes = (*found.notes, f"scattered light: {report_of([light])}")
     return replace(found, radiance=radiance, transmittance=through, notes=notes)
 
 
@@ -120,8 +113,10 @@ def lit_for(
     tolerance: float,
 ) -> ScatteredLight:
     """Solve a cloud's light, or see that what was solved is of this cloud."""
-    suns, _ = without_dark(suns, medium)
-    if not isinstance(scattering, ScatteredLight):
+    if isinstance(scattering, tuple):
+        expected = "one light that was solved for all suns, beside marched rays"
+        raise ValueError(complaint("scattering", expected, f"{len(scattering)} lights"))
+    if isinstance(scattering, str):
         return scattered_light(
             cloud,
             suns,
@@ -131,7 +126,6 @@ def lit_for(
             tolerance=0.5 * tolerance,
         )
     light = scattering
-    solved, _ = without_dark(light.suns, light.medium)
     same = (
         (light.grid is cloud or np.array_equal(light.grid.density, cloud.density))
         and np.array_equal(light.grid.lower, cloud.lower)
@@ -139,11 +133,11 @@ def lit_for(
         and np.array_equal(light.medium.sigma_t_rgb, medium.sigma_t_rgb)
         and np.array_equal(light.medium.albedo_rgb, medium.albedo_rgb)
         and (light.medium.g, light.medium.phase) == (medium.g, medium.phase)
-        and len(solved) == len(suns)
+        and len(light.suns) == len(suns)
         and all(
             np.array_equal(a.direction, b.direction)
             and np.array_equal(a.irradiance, b.irradiance)
-            for a, b in zip(solved, suns, strict=True)
+            for a, b in zip(light.suns, suns, strict=True)
         )
     )
     if not same:

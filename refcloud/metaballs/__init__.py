@@ -22,6 +22,7 @@ from refcloud.metaballs.nonnegative import non_negative_least_squares
 from refcloud.metaballs.orthogonal import orthogonal_least_squares
 from refcloud.metaballs.placement import placed
 from refcloud.metaballs.prune import prune
+from refcloud.metaballs.sampled import sampled_map
 from refcloud.metaballs.spread import rms_radii
 from refcloud.metaballs.subtract import place_and_subtract
 from refcloud.metaballs.weights import depth
@@ -58,6 +59,7 @@ __all__ = [
     "profile",
     "prune",
     "rms_radii",
+    "sampled_map",
     "save_levels",
     "save_metaballs",
     "voxel_balls",

@@ -74,6 +74,7 @@ class Lit(NamedTuple):
     ambient: Sequence[Colour]
     medium: Medium
     rules: Rules
+    glow: Sequence[Sequence[Colour]] | None = None  # by sun, then by ball
 
 
 def depth_order(balls: Sequence[Ball], depths: Sequence[float]) -> list[int]:
@@ -198,7 +199,9 @@ def ball_colours(lit: Lit, k: int, camera: Camera) -> list[list[float]]:
     x, y, z = lit.balls[k][0]
     wo = toward_eye((x, y, z), camera)
     colours = []
-    for (direction, _), reached in zip(lit.suns, lit.light, strict=True):
+    for s, ((direction, _), reached) in enumerate(
+        zip(lit.suns, lit.light, strict=True)
+    ):
         cos_theta = min(max(-dot(wo, direction), -1.0), 1.0)
         p = phase(medium.phase, medium.g, cos_theta)
         color = []
@@ -208,7 +211,7 @@ def ball_colours(lit: Lit, k: int, camera: Camera) -> list[list[float]]:
                 tau = ball_depth(lit.balls[k], lit.kernel, medium.sigma_t[c], rules)
                 sent *= held_tau(tau, medium.albedo[c], rules) / opacity(tau)
                 sent *= rules.solid_angle / WHOLE_SPHERE
-            color.append(sent)
+            color.append(sent + (lit.glow[s][k][c] if lit.glow else 0.0))
         colours.append(color)
     return [*colours, list(lit.ambient[k])]
 

@@ -98,8 +98,10 @@ def legendre_moments(name: str, g: float, degree: int) -> list[float]:
     return [{0: 1.0, 2: second}.get(l, 0.0) for l in range(degree + 1)]
 
 
-def delta_m(medium: Medium, degree: int) -> tuple[float, float, list[float], float]:
-    """Scale a medium: sigma', a', chi'_l and f."""
+def delta_m(
+    medium: Medium, degree: int
+) -> tuple[float, float, list[float], float, float]:
+    """Scale a medium: sigma', a', chi'_l, f and b."""
     sigma_t, albedo, g, name = medium
     *moments, next_moment = legendre_moments(name, g, degree + 1)
     f = next_moment if name == "hg" and g > 0.0 else 0.0
@@ -108,6 +110,7 @@ def delta_m(medium: Medium, degree: int) -> tuple[float, float, list[float], flo
         albedo * (1.0 - f) / (1.0 - albedo * f),
         [(chi - f) / (1.0 - f) for chi in moments],
         f,
+        abs(next_moment) if name == "hg" and g < 0.0 else 0.0,
     )
 
 

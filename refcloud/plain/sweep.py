@@ -108,6 +108,17 @@ def cell_mean(tau: float, own: float) -> float:
     return math.exp(-max(tau - own / 2.0, 0.0)) * mean_transmittance(own)
 
 
+def folded_beams(
+    tau: float, whole: float, own: float, turned: float
+) -> tuple[float, float]:
+    """Average two opposed beams over a voxel, each turned into the other."""
+    k = math.sqrt(1.0 - turned * turned)
+    r = (1.0 - k) / (1.0 + k)
+    on, back = cell_mean(k * tau, k * own), cell_mean(k * (2.0 * whole - tau), k * own)
+    left = 1.0 - r * math.exp(-2.0 * k * whole)
+    return (on - r * back) / left, math.sqrt(r) * (on - back) / left
+
+
 def intercepted(density: Grid, cell: Point, toward: Point, scale: float) -> float:
     """Add up what a cloud takes out of each ray of a beam, one ray per voxel."""
     step = step_of([-v for v in unit(toward)], cell)

@@ -1,40 +1,56 @@
 """The scene ``demand``: a large cumulus over small ones, all of them marched.
 
 The shape is that of the scene ``cumulus``, a pile of ellipsoids on a flat base, carved
-by Worley noise (`refcloud.cloudmap.billows`); the light is scattered in octaves
-(`refcloud.lighting.Octaves`), an approximation by name. Every cloud map is as fine as
-the picture shows it: a voxel is some two pixels.
+by Worley noise (`refcloud.cloudmap.billows`). Light of every order of scattering is
+solved on a coarser map; with ``scattering="single"``, or in a coloured medium, it is
+scattered in octaves (`refcloud.lighting.Octaves`), an approximation by name. Every
+cloud map is as fine as the picture shows it: a voxel is some two pixels.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import time
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from refcloud.camera import AnyCamera, Camera, OrthographicCamera, axes
-from refcloud.cloudmap import billows
+from refcloud.cloudmap import VoxelGrid, billows
 from refcloud.compose import merged
 from refcloud.conventions import WHOLE_SPHERE, Array, Skipped
 from refcloud.image import Picture
-from refcloud.lighting import Octaves, octave_march
+from refcloud.lighting import Octaves, block_means, octave_march, solved_march
+from refcloud.lighting.octave_march import SINGLE_PRECISION
 from refcloud.optics import Medium, Sun
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.scenes import cumulus
 from refcloud.scenes.demand import marched_alone
 from refcloud.scenes.demand_plane import no_model
 from refcloud.sky import Sky, clear_sky
+from refcloud.transport import PLANS, ScatteredLight, scattered_light
+from refcloud.transport.scattering import report_of
 
 SUN = Sun(
     np.array([-0.62, 0.62, 0.42]),
     0.95 * WHOLE_SPHERE * np.array([1.0, 0.95, 0.86]),
 )
-MEDIUM = Medium(1.5, 1.0, 0.6, "hg")
+MEDIUM = Medium(1.5, 1.0, 0.6, "hg")  # of the light in octaves
+# Of solved light: so dense that the skin alone shows, and a little dark in its folds.
+SOLVED_MEDIUM = Medium(5.0, 0.96, 0.3, "hg")
+SOLVED_SUN = Sun(SUN.direction, 0.68 * SUN.irradiance)
+SOLVED_SKY = 1.2  # times the light from sky and ground of the octaves
+# Its map's voxels along the longest axis, of the large cloud and of a small one.
+VOXELS, FIELD_VOXELS = 96, 40
+# Its plan, whatever the tolerance of the picture: that chooses its precision alone.
+PLAN = PLANS["quick"]
 VOXEL_PIXELS = 2.0  # of a picture, where the cloud is
 FINEST, COARSEST = 0.22, 1.6  # scene units of the cloud's own
+KEPT_FROM = (
+    0.8  # voxels of small pictures: a map of 2 MB takes longer to make than draw
+)
 
 
 class Placed(NamedTuple):
@@ -60,31 +76,38 @@ def draw(model: Model, view: View) -> Picture:
     """Generate, light and march the clouds, the farthest first."""
     marched_alone(view)
     camera = view.camera or cumulus.camera(view)
-    suns = (SUN,) if view.suns is None else view.suns
-    medium = view.medium or MEDIUM
+    solved = (view.scattering or best(view)) == "multiple"
+    suns = (SOLVED_SUN if solved else SUN,) if view.suns is None else view.suns
+    medium = view.medium or (SOLVED_MEDIUM if solved else MEDIUM)
     seconds = {"sky": 0.0, "generate": 0.0, "march": 0.0}
     start = time.perf_counter()
     light = clear_sky(camera, Sky())
     seconds["sky"] = time.perf_counter() - start
     skipped: list[Skipped] = []
-    notes = []
+    notes, lights = [], []
     clouds = farthest_first(camera)
     for placed in clouds:
         start = time.perf_counter()
         voxel = fineness(camera, placed)
-        grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
+        if voxel < KEPT_FROM or view.observe is not None:
+            grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
+        else:
+            grid = coarse_billows(placed.seed, voxel)
         middle = time.perf_counter()
-        L, T, rows = octave_march(
-            grid,
-            seen_from(camera, placed),
-            suns=tuple(turned_sun(sun, placed.turn) for sun in suns),
-            medium=medium,
-            octaves=Octaves(),
-            step=0.5 * voxel,
-            tolerance=view.tolerance / len(clouds),
-            seed=view.seed,
-            observe=view.observe,
-        )
+        how = {
+            "step": 0.5 * voxel,
+            "tolerance": view.tolerance / len(clouds),
+            "seed": view.seed,
+            "observe": view.observe,
+        }
+        here = seen_from(camera, placed)
+        theirs = tuple(turned_sun(sun, placed.turn) for sun in suns)
+        if solved:
+            lights.append(light_in(grid, placed, theirs, medium, view))
+            L, T, rows = solved_march(grid, here, light=lights[-1], **how)
+        else:
+            how |= {"suns": theirs, "medium": medium, "octaves": Octaves()}
+            L, T, rows = octave_march(grid, here, **how)
         # Air takes light of the cloud and puts its own there; behind is behind.
         clear = math.exp(-distance(camera, placed) / placed.air)
         L = clear * L + (1.0 - clear) * (1.0 - T)[..., None] * Sky().haze
@@ -95,7 +118,41 @@ def draw(model: Model, view: View) -> Picture:
         what = "cloud" if placed is HERO else "field"
         voxels = np.count_nonzero(grid.density)
         notes.append(f"{what}: {voxels} voxels of {voxel:.2g}")
+    if lights:
+        notes.append(f"scattered light: {report_of(lights)}")
     return Picture(light, None, merged(skipped), seconds, tuple(notes))
+
+
+def best(view: View) -> Literal["single", "multiple"]:
+    """Solve the light where the solution models the medium."""
+    medium = view.medium
+    coloured = medium and (np.ndim(medium.sigma_t) or np.ndim(medium.albedo))
+    return "single" if coloured else "multiple"
+
+
+def light_in(
+    grid: VoxelGrid, placed: Placed, suns: tuple[Sun, ...], medium: Medium, view: View
+) -> ScatteredLight:
+    """Solve the light in a cloud, on a map as coarse as smooth light needs."""
+    octaves = Octaves()
+    most = VOXELS if placed is HERO else FIELD_VOXELS
+    light = scattered_light(
+        block_means(grid, most=min(most, max(grid.density.shape) // 2)),
+        suns,
+        medium=medium,
+        sky=SOLVED_SKY * octaves.sky_light,
+        ground=SOLVED_SKY * octaves.ground_light,
+        plan=dataclasses.replace(PLAN, double=view.tolerance < SINGLE_PRECISION),
+    )
+    if view.observe is not None:
+        view.observe("scattered light", light)
+    return light
+
+
+@functools.lru_cache(maxsize=2 * (len(FIELD) + 1))
+def coarse_billows(seed: int, voxel: float) -> VoxelGrid:
+    """Make a coarse cloud map once: small pictures are drawn many times."""
+    return billows(seed=seed, voxel=voxel)
 
 
 def fineness(camera: AnyCamera, placed: Placed) -> float:
@@ -148,4 +205,12 @@ def turned(vector: Array, turn: float) -> Array:
     return np.array([c * x - s * z, y, s * x + c * z])
 
 
-enter(Scene("demand", "a marched cumulus over a field of small ones", no_model, draw))
+enter(
+    Scene(
+        "demand",
+        "a marched cumulus over a field of small ones",
+        no_model,
+        draw,
+        Motion(cumulus.eye, (SUN,)),
+    )
+)

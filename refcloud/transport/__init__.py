@@ -10,6 +10,7 @@ from refcloud.transport.delta_m import (
 )
 from refcloud.transport.diffusion import Diffused, diffuse_source, diffused_light
 from refcloud.transport.directions import Directions, sphere_directions
+from refcloud.transport.folded import folded_beams
 from refcloud.transport.harmonics import harmonics
 from refcloud.transport.paths import PathEstimate, trace_paths
 from refcloud.transport.plans import PLANS, Plan, Stage
@@ -38,6 +39,7 @@ __all__ = [
     "delta_m",
     "diffuse_source",
     "diffused_light",
+    "folded_beams",
     "forward_depth",
     "harmonics",
     "intercepted",

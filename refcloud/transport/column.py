@@ -77,7 +77,8 @@ def _integrated(density: Array, places: Array, step: Array) -> Array:
             crossings.append((np.arange(n) - start[:, None]) / step[axis])
         near = np.maximum(near, ends.min(axis=1))
         far = np.minimum(far, ends.max(axis=1))
-    far = np.maximum(far, near)  # a miss has no length
+    hit = near < far  # a miss has no length, and may be without end away
+    near, far = np.where(hit, near, 0.0), np.where(hit, far, 0.0)
     # 3. Pieces between crossings, and two Gauss points in each.
     cuts = [near[:, None], *crossings, far[:, None]]
     t = np.concatenate(cuts, axis=1)

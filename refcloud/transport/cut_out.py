@@ -14,8 +14,9 @@ from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 from refcloud.transport.delta_m import delta_m
 from refcloud.transport.directions import sphere_directions
+from refcloud.transport.folded import folded_beams, passed_and_returned
 from refcloud.transport.plans import Plan
-from refcloud.transport.sunlight import cell_mean, intercepted
+from refcloud.transport.sunlight import cell_mean, columns_across
 from refcloud.transport.sweep import step_of
 
 SMALLEST = 4  # voxels along the longest axis that stages leave
@@ -24,14 +25,25 @@ SMALLEST = 4  # voxels along the longest axis that stages leave
 ENOUGH = 48
 
 
-def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
-    """Refuse optical depths that are no longer numbers."""
-    with np.errstate(over="ignore"):
-        across = float(np.sqrt(np.square(grid.upper - grid.lower).sum()))
-        largest = float(np.max(medium.sigma_t)) * float(grid.density.max()) * across
-    if not largest < 1e300:
-        expected = "an optical depth below 1e300 across the cloud"
-        raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
+# Optical depth of a voxel beyond which the iteration stalls: at 1e6 a white furnace is
+# still off by half after 500 sweeps, at 1e4 by 4e-3.
+THICKEST_VOXEL = 1e4
+
+
+def thickest_voxel(grid: VoxelGrid, medium: Medium) -> float:
+    """Give the largest optical depth of one voxel, along its longest edge."""
+    extinction = float(medium.sigma_t_rgb.max()) * float(grid.density.max())
+    return extinction * float(cell_size(grid).max())
+
+
+def refuse_thick(grid: VoxelGrid, medium: Medium) -> None:
+    """Refuse voxels so thick that no number of sweeps carries light through them."""
+    edges = cell_size(grid)  # light leaves a flat voxel across its shortest edge
+    tau = thickest_voxel(grid, medium) * float(edges.min() / edges.max())
+    if not tau <= THICKEST_VOXEL:
+        expected = f"an optical depth of at most {THICKEST_VOXEL:g} in a voxel"
+        advice = "lower sigma_t or use smaller voxels"
+        raise ValueError(complaint("sigma_t", expected, f"{tau:.3g}", advice))
 
 
 def cut_out(grid: VoxelGrid, plan: Plan, sigma: float) -> tuple[Plan, VoxelGrid, int]:
@@ -60,24 +72,39 @@ def cut_out(grid: VoxelGrid, plan: Plan, sigma: float) -> tuple[Plan, VoxelGrid,
 def beam_norms(
     cloud: VoxelGrid,
     columns: list[NDArray[Any]],
+    behind: list[NDArray[Any]],
     suns: tuple[Sun, ...],
     medium: Medium,
     plan: Plan,
-) -> dict[float, Array]:
-    """Give the factors that make voxels take out of each beam what the cloud does."""
-    scaled = {}
-    for stage in plan.stages:
-        kind = delta_m(medium, sphere_directions(stage.directions).degree)
-        scaled[kind.forward] = float(kind.sigma_t[0])
-    sigmas = np.array(list(scaled.values()))
+) -> dict[int, Array]:
+    """Give the factors that make voxels take out of each beam what the cloud does.
+
+    By degree of the phase function; `behind` is empty where no light is turned round.
+    """
     cell = cell_size(cloud)
     near = np.nonzero(cloud.density)
     density = cloud.density[near]
-    factors = np.ones((len(sigmas), len(suns)))
-    for s, (sun, column) in enumerate(zip(suns, columns, strict=True)):
+    degrees = {sphere_directions(stage.directions).degree for stage in plan.stages}
+    factors = {degree: np.ones(len(suns)) for degree in degrees}
+    for s, sun in enumerate(suns):
         path = step_of(sun.direction, cell).length
-        for k, whole in enumerate(intercepted(cloud, sun.direction, scale=sigmas)):
-            T = cell_mean(sigmas[k] * column[near], density * (sigmas[k] * path))
-            taken = sigmas[k] * float(cell.prod()) * float((density * T).sum())
-            factors[k, s] = whole / taken if taken > 0.0 else 1.0
-    return dict(zip(scaled, factors, strict=True))
+        lines, area = columns_across(cloud, sun.direction)
+        for degree in degrees:
+            scaled = delta_m(medium, degree)
+            sigma = float(scaled.sigma_t[0])
+            turned = float(scaled.albedo[0]) * scaled.backward
+            own = density * (sigma * path)
+            tau = sigma * columns[s][near]
+            if turned > 0.0:
+                beams = folded_beams(
+                    tau, tau + sigma * behind[s][near], own, turned=turned
+                )
+                T = (1.0 - turned) * (beams[0] + beams[1])
+                passed, returned = passed_and_returned(sigma * lines, turned)
+                whole = float((1.0 - passed - returned).sum()) * area
+            else:
+                T = cell_mean(tau, own)
+                whole = float(-np.expm1(-sigma * lines).sum()) * area
+            taken = sigma * float(cell.prod()) * float((density * T).sum())
+            factors[degree][s] = whole / taken if taken > 0.0 else 1.0
+    return factors

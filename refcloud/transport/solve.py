@@ -91,9 +91,7 @@ def seen(scaled: ScaledMedium) -> NDArray[np.intp]:
     return np.flatnonzero(scaled.moments[degrees])
 
 
-def solve(
-    field: Field, light: Light, plan: Plan, norms: dict[float, Array]
-) -> Solution:
+def solve(field: Field, light: Light, plan: Plan, norms: dict[int, Array]) -> Solution:
     """Run the stages of a plan.
 
     Parameters
@@ -103,7 +101,7 @@ def solve(
     plan
         The stages; halvings count from the field's grid.
     norms
-        Factors on each sun's light, shape (S,), by the forward share of the medium.
+        Factors on each sun's light, shape (S,), by the degree of the phase function.
 
     Returns
     -------
@@ -140,6 +138,17 @@ def solve(
     level = before[1]
     if level.inflow is not None:
         moments = moments + level.inflow
+    if level.scaled.backward > 0.0:  # an eye sees exactly what was never turned round
+        degree, halvings = level.directions.degree, plan.stages[-1].halvings
+        moments = moments + sun_moments(
+            light,
+            shone.at(degree, halvings),
+            level.scaled,
+            seen(level.scaled),
+            level.beams,
+            dtype,
+            more_than_once=True,
+        )
     return Solution(level, moments, tuple(counts), tuple(residuals), converged)
 
 
@@ -169,7 +178,7 @@ def _level(field: Field, light: Light, stage: Stage, shone: Shone, dtype: Any) -
     share = float(scaled.albedo[0]) * scaled.moments[degree_of(places)]
     Y = harmonics(directions.vectors, directions.degree)[:, places]
     suns = shone.at(directions.degree, stage.halvings)
-    sunlight = sun_moments(light, suns, directions.degree, places, beams, dtype)
+    sunlight = sun_moments(light, suns, scaled, places, beams, dtype)
     inflow = inflow_moments(light, directions, beams, Y, dtype)
     return Level(scaled, directions, beams, Y, share, sunlight, inflow)
 
@@ -194,12 +203,13 @@ def _carried(
     found[:terms] = values
     if stage.directions != old_stage.directions:
         # Light that went straight on with the beam before is scattered light now.
-        degree = level.directions.degree
+        degree, light = level.directions.degree, shone.light
         before, now = (
             shone.at(d, stage.halvings) for d in (old.directions.degree, degree)
         )
-        gone = [b - n for b, n in zip(before, now, strict=True)]
+        gone = [b.less(n) for b, n in zip(before, now, strict=True)]
+        places = seen(level.scaled)
         found += sun_moments(
-            shone.light, gone, degree, seen(level.scaled), level.beams, found.dtype
+            light, gone, level.scaled, places, level.beams, found.dtype, smooth=False
         )
     return found

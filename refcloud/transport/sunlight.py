@@ -76,6 +76,12 @@ def intercepted(
     >>> intercepted(grid, [0.0, 0, 1], scale=[1.0]).round(6)
     array([19.004259])
     """
+    columns, area = columns_across(grid, direction)
+    return np.array([-np.expm1(-s * columns).sum() * area for s in scale])
+
+
+def columns_across(grid: VoxelGrid, direction: Array) -> tuple[Array, float]:
+    """Give the columns of density along rays of a beam, and the area of each ray."""
     cell = cell_size(grid)
     step = step_of(-unit_vector(direction), cell)
     slices = np.moveaxis(grid.density, step.axis, 0)[:: step.sense]
@@ -93,7 +99,5 @@ def intercepted(
         for down, rows in ((j, near), (j + 1, far)):
             columns[down : down + h, i : i + w] += (1.0 - u) * rows
             columns[down : down + h, i + 1 : i + 1 + w] += u * rows
-    columns = columns[columns > 0.0]
     # A voxel's volume over its path is the area that its ray stands for.
-    area = float(cell.prod()) / step.length
-    return np.array([-np.expm1(-s * step.length * columns).sum() * area for s in scale])
+    return columns[columns > 0.0] * step.length, float(cell.prod()) / step.length

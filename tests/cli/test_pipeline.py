@@ -219,6 +219,15 @@ def test_a_cloud_map_may_be_splatted_as_its_voxels(cloud, run, small) -> None:
     assert "optical depth 40 in the middle" in part.out
 
 
+def test_balls_show_every_order_of_scattering(cloud, run, small) -> None:
+    line = "render small.npz --scattering multiple --width 16 --height 12 -o many.png"
+    status, out, _ = run(*line.split())
+    assert status == 0
+    assert "scattered light: 2 solutions" in out
+    how = {"width": 16, "height": 12, "tolerance": 1 / 255}
+    assert same_bytes(rc.render(cloud[1], scattering="multiple", **how), "many.png")
+
+
 def test_a_cloud_map_is_marched(cloud, run, small) -> None:
     line = (
         "render small-voxels.npz --width 24 --height 18 --tolerance 0 --density 2"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 
 import numpy as np
@@ -112,23 +113,40 @@ def wide_smooth_balls() -> LitMetaballs:
     return sunward(wide, SUNS, medium=MEDIUM, look=SMOOTH)
 
 
+TILES = "refcloud.lighting.certified_tiles"
+
+
+def off(*names: str) -> contextlib.ExitStack:
+    """Switch ways to draw tiles off, by their least numbers."""
+    places = {"LEAST_RISE": "refcloud.raster.between"}
+    stack = contextlib.ExitStack()
+    for name in names:
+        stack.enter_context(replaced(places.get(name, TILES), **{name: np.inf}))
+    return stack
+
+
+def with_and_without(name: str, *others: str) -> Found:
+    """Draw tiles of wide balls with one way on, and with it off; others are off."""
+    with off(*others):
+        found, rows = seen(wide_smooth_balls(), WIDE, 0.02)
+        with off(name):
+            whole, _ = seen(wide_smooth_balls(), WIDE, 0.02)
+    return Found(found, whole, rows)
+
+
 @proof("eye", "tiles in double precision")
 def tiles_in_double_precision() -> Found:
-    lit = wide_smooth_balls()
-    with replaced("refcloud.lighting.flat_tiles", LEVELS=()):
-        found, rows = seen(lit, WIDE, 0.02)
-        with replaced("refcloud.lighting.flat_tiles", LEAST_FLOAT32=np.inf):
-            whole, _ = seen(lit, WIDE, 0.02)
-    return Found(found, whole, rows)
+    return with_and_without("LEAST_FLOAT32", "LEAST_NODES", "LEAST_RISE")
 
 
 @proof("eye", "pixels between nodes of smooth tiles")
 def pixels_between_nodes() -> Found:
-    lit = wide_smooth_balls()
-    found, rows = seen(lit, WIDE, 0.02)
-    with replaced("refcloud.lighting.flat_tiles", LEVELS=()):
-        whole, _ = seen(lit, WIDE, 0.02)
-    return Found(found, whole, rows)
+    return with_and_without("LEAST_NODES", "LEAST_RISE")
+
+
+@proof("eye", "pixels between every second one")
+def pixels_between_every_second_one() -> Found:
+    return with_and_without("LEAST_RISE", "LEAST_NODES")
 
 
 @proof("eye", "balls of a tile behind opaque ones", rounding=1e-12)  # orders of drawing

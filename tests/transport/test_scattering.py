@@ -22,11 +22,14 @@ from refcloud.transport import (
     PLANS,
     Plan,
     Stage,
+    cell_mean,
+    folded_beams,
     harmonics,
     scattered_light,
     smooth_phase,
     source_toward,
 )
+from refcloud.transport.folded import passed_and_returned
 
 COUNTS = [26, 50, 128]
 MEDIA = [
@@ -239,6 +242,23 @@ def test_the_source_of_each_direction_holds_the_first_order() -> None:
         np.testing.assert_allclose(first[n][level.beams.near], expected, atol=1e-12)
 
 
+@pytest.mark.parametrize("turned", [0.0, 0.3, 0.9, 0.999])
+def test_opposed_beams_lose_what_they_scatter(turned: float) -> None:
+    """Neither makes light: what leaves, and what is scattered aside, came in."""
+    whole, n = 7.0, 64
+    own = np.full(n, whole / n)
+    tau = (np.arange(n) + 0.5) * whole / n
+    on, back = folded_beams(tau, np.full(n, whole), own, turned=turned)
+    passed, returned = passed_and_returned(np.array(whole), turned)
+    aside = (1.0 - turned) * float(((on + back) * own).sum())
+    assert aside + passed + returned == pytest.approx(1.0, abs=1e-12)
+    assert (on >= 0.0).all()
+    assert (back >= 0.0).all()
+    if not turned:
+        np.testing.assert_allclose(on, cell_mean(tau, own), rtol=1e-14)
+        assert not back.any()
+
+
 # Stability
 
 
@@ -295,9 +315,10 @@ def test_clouds_that_do_not_touch_light_each_other() -> None:
     assert lit.sum() > J.sum()
 
 
-def test_depths_without_end_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"^sigma_t: expected an optical depth below"):
-        scattered_light(cloud(4), SUN, medium=Medium(1e300))
+@pytest.mark.parametrize("sigma_t", [1e5, 1e300])
+def test_voxels_too_thick_to_carry_light_are_refused(sigma_t: float) -> None:
+    with pytest.raises(ValueError, match=r"^sigma_t: expected an optical depth of at"):
+        scattered_light(cloud(4), SUN, medium=Medium(sigma_t))
 
 
 def test_an_unknown_plan_is_refused() -> None:

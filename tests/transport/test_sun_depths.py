@@ -181,6 +181,13 @@ def test_one_voxel() -> None:
     assert sun_depths(grid, [1, 1, 1]).density.item() == pytest.approx(np.sqrt(3.0))
 
 
+def test_a_direction_that_hardly_moves_along_an_axis() -> None:
+    grid = VoxelGrid(np.ones((1, 1, 1)), [0, 0, 0], [1, 1, 1])
+    points = [[1.125, 0.0, 0.0], [0.5, 0.5, 0.25]]  # beside the box, and in it
+    found = column_density(grid, points, [-2.2250738585e-313, 0.0, 1.0])
+    assert found.tolist() == [0.0, 0.75]
+
+
 def test_too_many_samples_are_refused_in_one_line() -> None:
     grid = VoxelGrid(np.zeros((512, 512, 256)), [0, 0, 0], [1, 1, 1])
     with pytest.raises(ValueError, match=r"^scale: expected [^\n]*$"):

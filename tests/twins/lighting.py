@@ -27,6 +27,12 @@ WITHOUT = {
     "refcloud.lighting.look.named": "looks rules up; nothing is computed",
     "refcloud.lighting.solved.lit_by_solution": "reads a solved field at centres; held"
     " against it and against the march in tests/lighting/test_solved.py",
+    "refcloud.lighting.solved_march.solved_march": "march_shining with other colors;"
+    " tested in tests/lighting/test_solved_march.py",
+    "refcloud.lighting.solved_march.block_means": "means of blocks; tested in"
+    " tests/lighting/test_solved_march.py",
+    "refcloud.lighting.solved.solved_light": "scattered_light of a sampled map, light"
+    " by light; tested in tests/lighting/test_solved.py",
 }
 
 ROUNDED = "worst seen 1.1e-16 in 500 examples, times 10: the same few operations"
@@ -140,6 +146,7 @@ def lit_of(lit: array.LitMetaballs) -> plain.Lit:
         lit.ambient.tolist(),
         medium_of(lit.medium),
         rules_of(lit.look),
+        None if lit.glow is None else lit.glow.tolist(),
     )
 
 
@@ -152,7 +159,9 @@ def drawn_lit(draw: Draw) -> array.LitMetaballs:
         s[:, None, None], k[:, None], np.arange(3), seed=seed
     )
     ambient = uniform(9, k[:, None], np.arange(3), seed=seed)
-    return array.LitMetaballs(balls, suns, light, ambient, draw(media), draw(looks))
+    glow = 0.5 * light if draw(st.booleans()) else None
+    how = draw(media), draw(looks)
+    return array.LitMetaballs(balls, suns, light, ambient, *how, glow=glow)
 
 
 @twin(array.depth_order, plain.depth_order, tolerance=0.0, why="the same order")

@@ -21,6 +21,8 @@ WITHOUT = {
     "refcloud.metaballs.levels.choose_level": "looks a row up; judged by pictures",
     "refcloud.metaballs.levels_file.save_levels": "writes a file",
     "refcloud.metaballs.levels_file.load_levels": "reads a file",
+    "refcloud.metaballs.sampled.sampled_map": "field_grid at the centres of voxels;"
+    " tested in tests/metaballs/test_sampled.py",
     "refcloud.metaballs.file.save_metaballs": "writes a file",
     "refcloud.metaballs.file.load_metaballs": "reads a file",
 }

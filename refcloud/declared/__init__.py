@@ -1,0 +1,15 @@
+"""Declared scenes: read from TOML, written to it, and drawn."""
+
+from refcloud.declared.declaration import Cloud, Declaration, Placement
+from refcloud.declared.drawn import scene_from
+from refcloud.declared.reading import load_scene
+from refcloud.declared.writing import save_scene
+
+__all__ = [
+    "Cloud",
+    "Declaration",
+    "Placement",
+    "load_scene",
+    "save_scene",
+    "scene_from",
+]

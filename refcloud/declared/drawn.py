@@ -1,0 +1,116 @@
+"""A declared scene drawn: clouds are made, placed, lit and laid one over the other."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from functools import partial
+
+import numpy as np
+
+from refcloud.camera import Camera
+from refcloud.choices import SUN, default_medium, framed
+from refcloud.cloudmap import VoxelGrid, generate
+from refcloud.compose import Layer, draw_layers
+from refcloud.conventions import Skipped
+from refcloud.declared.declaration import Cloud, Declaration
+from refcloud.image import Picture
+from refcloud.lighting import Haze, named
+from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
+from refcloud.scene import Model, Motion, Scene, View
+
+
+def scene_from(declared: Declaration) -> Scene:
+    """Make a scene of a declaration: its eye and suns may turn, wind may blow.
+
+    Parameters
+    ----------
+    declared
+        As a file says it.
+
+    Returns
+    -------
+    The scene; it is not entered into the table of names.
+    """
+    return Scene(
+        declared.name,
+        declared.title,
+        partial(model, declared),
+        partial(draw, declared),
+        Motion(partial(eye, declared), declared.suns or (SUN,)),
+    )
+
+
+def model(declared: Declaration) -> Model:
+    """Generate the clouds, and approximate them where the file says so."""
+    seconds = {"generate": 0.0, "approximate": 0.0}
+    clouds: dict[str, Metaballs] = {}
+    skipped: list[Skipped] = []
+    notes: list[str] = []
+    for number, cloud in enumerate(declared.clouds):
+        start = time.perf_counter()
+        grid = generate(**cloud.shape)
+        middle = time.perf_counter()
+        balls = _balls(cloud, grid)
+        seconds["generate"] += middle - start
+        seconds["approximate"] += time.perf_counter() - middle
+        clouds[str(number)] = balls
+        skipped += [*grid.skipped, *balls.skipped]
+        notes.append(f"cloud {number}: {len(balls)} balls")
+    return Model(clouds, tuple(notes), tuple(skipped), seconds)
+
+
+def _balls(cloud: Cloud, grid: VoxelGrid) -> Metaballs:
+    place = cloud.place
+    if cloud.balls is None:
+        balls = voxel_balls(grid)
+    else:
+        balls = approximate(grid, **cloud.balls)
+    if place.even:
+        balls = dataclasses.replace(balls, densities=np.ones(len(balls)))
+    if place.prune:
+        balls = prune(balls)
+    if place.at.any() or place.turn or place.scale != 1.0:
+        balls = placed(balls, place.at, turn=place.turn, scale=place.scale)
+    return balls
+
+
+def eye(declared: Declaration, model: Model, view: View) -> Camera:
+    """Give the declared camera, or frame the last cloud."""
+    if declared.camera is not None:
+        return Camera(**declared.camera, width=view.width, height=view.height)
+    last = model.clouds[str(len(declared.clouds) - 1)]
+    return framed(last, view.width, view.height)
+
+
+def draw(declared: Declaration, model: Model, view: View) -> Picture:
+    """Light and draw the clouds in their order, before the sky."""
+    base = declared.look if view.look is None else named(view.look)
+    last = model.clouds[str(len(declared.clouds) - 1)]
+    medium, notes = view.medium or declared.medium, ()
+    if medium is None:
+        medium, note = default_medium(last, base)
+        notes = (note,)
+    layers = []
+    for number, cloud in enumerate(declared.clouds):
+        air = cloud.place.air
+        layers.append(
+            Layer(
+                model.clouds[str(number)],
+                medium,
+                dataclasses.replace(base, **cloud.look),
+                None if air is None else Haze(declared.sky.haze, air),
+            )
+        )
+    picture = draw_layers(
+        layers,
+        view.camera or eye(declared, model, view),
+        view.suns if view.suns is not None else declared.suns or (SUN,),
+        declared.sky,
+        tolerance=view.tolerance,
+        seed=view.seed,
+        observe=view.observe,
+        backend=view.backend,
+        kept=view.kept,
+    )
+    return dataclasses.replace(picture, notes=(*notes, *picture.notes))

@@ -1,0 +1,181 @@
+"""Scenes from TOML: every number is checked against the library's own range.
+
+Every table of the file is one function's or dataclass's parameters, under their own
+names: ``shape`` those of `generate`, ``balls`` those of `approximate`, ``camera``,
+``sun``, ``medium``, ``look`` and ``sky`` the fields of those types. What is left out
+has the default that it has in Python.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import inspect
+import tomllib
+import typing
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from refcloud.camera import Camera
+from refcloud.checking import check
+from refcloud.cloudmap import generate
+from refcloud.declared.declaration import (
+    FORMAT,
+    VERSION,
+    Cloud,
+    Declaration,
+    Placement,
+)
+from refcloud.lighting import Look, named
+from refcloud.metaballs import approximate
+from refcloud.optics import Medium, Sun
+from refcloud.refusal import complaint, describe
+from refcloud.sky import Sky
+
+MOST_BYTES = 1_000_000  # of a file; those of the scenes here have about 2000
+MOST_CLOUDS = 1000
+# Parameters that a file cannot hold, or that stand in a table of their own.
+NOT_TYPED = ("observe", "grid", "width", "height")
+LookName = Literal["cumulus", "man"]
+
+
+def load_scene(path: str | Path) -> Declaration:
+    """Read a scene's declaration, every number against the library's own range.
+
+    Parameters
+    ----------
+    path
+        A TOML file.
+
+    Returns
+    -------
+    The declaration.
+
+    Raises
+    ------
+    FileNotFoundError
+        No such file.
+    ValueError, TypeError
+        It is no TOML, of another kind or version, or something in it does not fit; the
+        line names the file, the table and the key.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: expected a scene (.toml), got no such file")
+    if not path.is_file() or path.stat().st_size > MOST_BYTES:
+        raise ValueError(complaint(f"{path}", "a scene (.toml)", "no such file's kind"))
+    try:
+        table = tomllib.loads(path.read_text("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        what = " ".join(str(error).split())[:80]
+        raise ValueError(complaint(f"{path}", "a TOML file", f"{what}")) from None
+    try:
+        return _declared(table)
+    except (ValueError, TypeError) as error:
+        raise type(error)(f"{path}: {error}") from None
+
+
+def _declared(table: dict[str, Any]) -> Declaration:
+    kind = table.pop("format", None), table.pop("version", None)
+    if kind != (FORMAT, VERSION):
+        expected = f'format = "{FORMAT}", version = {VERSION}'
+        raise ValueError(complaint("format", expected, f"{kind[0]!r}, {kind[1]!r}"))
+    known = ("name", "title", "camera", "sun", "medium", "look", "sky", "cloud")
+    _refuse_unknown("", table, known)
+    clouds = _tables("cloud", table.get("cloud", []))
+    if not 1 <= len(clouds) <= MOST_CLOUDS:
+        expected = f"1 to {MOST_CLOUDS} tables [[cloud]]"
+        raise ValueError(complaint("cloud", expected, f"{len(clouds)}"))
+    medium, sky = table.get("medium"), table.get("sky", {})
+    camera = table.get("camera")
+    if camera is not None:
+        camera = checked_table("camera", camera, Camera)
+        Camera(**camera)
+    return Declaration(
+        check("name", table.get("name", "scene"), str),
+        check("title", table.get("title", ""), str),
+        tuple(_cloud(f"cloud[{k}]", each) for k, each in enumerate(clouds)),
+        camera,
+        tuple(
+            Sun(**checked_table(f"sun[{k}]", each, Sun))
+            for k, each in enumerate(_tables("sun", table.get("sun", [])))
+        ),
+        None if medium is None else Medium(**checked_table("medium", medium, Medium)),
+        _look("look", table.get("look", {})),
+        Sky(**checked_table("sky", sky, Sky)),
+    )
+
+
+def _look(name: str, table: Any) -> Look:
+    """Read a look: one by name, and what is changed of it."""
+    rest = dict(_table(name, table))
+    base = named(check(f"{name}.like", rest.pop("like", "cumulus"), LookName))
+    return dataclasses.replace(base, **checked_table(name, rest, Look))
+
+
+def _cloud(name: str, table: Any) -> Cloud:
+    parts = ("shape", "balls", "look")
+    place = {key: value for key, value in table.items() if key not in parts}
+    balls = table.get("balls")
+    return Cloud(
+        checked_table(f"{name}.shape", table.get("shape", {}), generate),
+        None if balls is None else checked_table(f"{name}.balls", balls, approximate),
+        Placement(**checked_table(name, place, Placement, also=parts)),
+        checked_table(f"{name}.look", table.get("look", {}), Look),
+    )
+
+
+def checked_table(
+    name: str, table: Any, thing: Callable[..., Any], *, also: tuple[str, ...] = ()
+) -> dict[str, Any]:
+    """Check a table against the annotated parameters of a function or dataclass.
+
+    Parameters
+    ----------
+    name
+        What a refusal calls the table.
+    table
+        What the file holds.
+    thing
+        Whose parameters its keys are.
+    also
+        Further keys that a refusal may suggest.
+
+    Returns
+    -------
+    The values, converted.
+
+    Raises
+    ------
+    ValueError, TypeError
+        A key is unknown, or its value does not fit.
+    """
+    table = _table(name, table)
+    hints = typing.get_type_hints(thing, include_extras=True)
+    names = [n for n in inspect.signature(thing).parameters if n not in NOT_TYPED]
+    _refuse_unknown(f"{name}.", table, (*names, *also))
+    return {
+        key: check(f"{name}.{key}", value, hints[key]) for key, value in table.items()
+    }
+
+
+def _table(name: str, table: Any) -> dict[str, Any]:
+    if not isinstance(table, dict):
+        raise TypeError(complaint(name, f"a table [{name}]", describe(table)))
+    return table
+
+
+def _tables(name: str, tables: Any) -> list[dict[str, Any]]:
+    if not isinstance(tables, list):
+        raise TypeError(complaint(name, f"tables [[{name}]]", describe(tables)))
+    return [_table(name, each) for each in tables]
+
+
+def _refuse_unknown(where: str, table: Mapping[str, Any], known: Any) -> None:
+    for key in table:
+        if key not in known:
+            near = difflib.get_close_matches(key, known, 1)
+            advice = f"did you mean {near[0]}?" if near else ""
+            expected = "one of " + ", ".join(known)
+            raise ValueError(complaint(f"{where}{key}", expected, "it", advice))

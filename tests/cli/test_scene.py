@@ -1,0 +1,35 @@
+"""``refcloud scene`` writes a scene that ``refcloud render`` draws as the named one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+SIZE = "--width 24 --height 18"
+
+
+def test_a_written_scene_is_rendered_and_changed(run, here: Path) -> None:
+    assert run("scene", "man-10") == (0, "man-10.toml\n", "")
+    for what, out in (("man-10", "a.png"), ("man-10.toml", "b.png")):
+        assert run(*f"render {what} {SIZE} -o {out}".split()).status == 0
+    assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
+    text = Path("man-10.toml").read_text("utf-8")
+    Path("few.toml").write_text(text.replace("count = 30", "count = 5"), "utf-8")
+    ended = run(*f"render few.toml {SIZE}".split())
+    assert "cloud 0: 5 balls\n" in ended.out
+    assert ended.out.splitlines()[-1] == "few.png"
+    moved = run(*f"animate few.toml --frames 2 --turn-eye 360 {SIZE} -o f".split())
+    assert "the way closes" in moved.out
+
+
+def test_what_does_not_fit_is_refused_in_one_line(run, here: Path) -> None:
+    Path("bad.toml").write_text("[cloud", "utf-8")
+    for line, message in (
+        ("scene demand", "NAME: expected one of cumulus, man-04"),
+        ("scene man-10 -o a.txt", "--output: expected a name ending in .toml"),
+        ("render none.toml", "none.toml: expected a scene (.toml), got no such file"),
+        ("render bad.toml", "bad.toml: expected a TOML file"),
+    ):
+        status, out, err = run(*line.split())
+        assert (status, out) == (2, "")
+        assert message in err
+        assert err.count("\n") == 1

@@ -1,0 +1,157 @@
+"""Scene files: the scenes' own bits, round trips, refusals that name the key."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strategies import values_for
+
+import refcloud as rc
+from refcloud.declared import (
+    Cloud,
+    Declaration,
+    Placement,
+    load_scene,
+    save_scene,
+    scene_from,
+)
+from refcloud.declared.reading import checked_table
+from refcloud.scenes import SCENES, View
+from refcloud.scenes.as_files import FILES
+
+SMALL = Cloud(
+    {"diameters": np.array([20.0, 11.0, 11.0]), "cell": 5.0, "relief": 2.0},
+    {"count": 12, "seed": 3},
+    Placement(np.array([1.0, 2.0, 3.0]), 0.5, 2.0, 400.0, prune=True),
+    {"buffer": 64},
+)
+
+
+def same(one: Any, other: Any) -> bool:
+    if dataclasses.is_dataclass(one):
+        return type(one) is type(other) and all(
+            same(getattr(one, f.name), getattr(other, f.name))
+            for f in dataclasses.fields(one)
+        )
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(same(one[k], other[k]) for k in one)
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    return bool(np.array_equal(one, other))
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_gives_its_declaration_again(name: str, tmp_path: Path) -> None:
+    path = save_scene(tmp_path / "a.toml", FILES[name])
+    assert same(load_scene(path), FILES[name])
+    assert scene_from(load_scene(path)).title == SCENES[name].title
+
+
+@pytest.mark.parametrize("name", ["man-10"])
+def test_a_file_draws_the_scene_to_the_bit(name: str, tmp_path: Path) -> None:
+    scene = scene_from(load_scene(save_scene(tmp_path / "a.toml", FILES[name])))
+    view = View(32, 24)
+    own = SCENES[name].draw(SCENES[name].model(), view)
+    np.testing.assert_array_equal(scene.draw(scene.model(), view).linear, own.linear)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [n for n in FILES if n != "man-10"])
+def test_every_file_draws_its_scene_to_the_bit(name: str, tmp_path: Path) -> None:
+    test_a_file_draws_the_scene_to_the_bit(name, tmp_path)
+
+
+@settings(max_examples=20)
+@given(data=st.data())
+def test_every_number_comes_back_to_the_last_bit(data, tmp_path_factory) -> None:
+    def drawn(thing: type, *names: str) -> dict[str, Any]:
+        import typing
+
+        hints = typing.get_type_hints(thing, include_extras=True)
+        return {name: data.draw(values_for(hints[name])) for name in names}
+
+    declared = Declaration(
+        data.draw(st.text(max_size=8)),
+        'a "title"\twith \x7f signs é',
+        (SMALL, Cloud({"seed": data.draw(st.integers(-9, 9))})),
+        {"eye": np.array([0.1, 0.2, 1e-300]), "target": -np.ones(3), "fov_y": 0.7},
+        (rc.Sun([0.3, 0.4, 0.5], **drawn(rc.Sun, "irradiance")),),
+        rc.Medium(1.5, **drawn(rc.Medium, "albedo", "g")),
+        rc.Look(**drawn(rc.Look, "erosion", "sky_light", "readback")),
+        rc.Sky(**drawn(rc.Sky, "zenith", "bend")),
+    )
+    declared = dataclasses.replace(
+        declared,
+        camera={**(declared.camera or {}), "target": np.array([0.0, 0.0, -1.0])},
+    )
+    path = save_scene(tmp_path_factory.mktemp("a") / "a.toml", declared)
+    assert same(load_scene(path), declared)
+
+
+def test_a_declared_scene_is_drawn_and_animated(tmp_path: Path) -> None:
+    scene = scene_from(Declaration("mine", "", (SMALL,)))
+    picture = rc.render(scene, width=24, height=18)
+    assert any(note.startswith("medium: sigma_t") for note in picture.notes)
+    made = rc.animate(
+        scene,
+        tmp_path / "a",
+        frames=2,
+        moves=rc.Moves(turn_eye=360.0),
+        width=24,
+        height=18,
+    )
+    first = rc.load_picture(made.path / "frame-0000.png")
+    picture.save(tmp_path / "still.png")
+    still = rc.load_picture(tmp_path / "still.png")
+    np.testing.assert_array_equal(first.linear, still.linear)
+
+
+HEAD = 'format = "refcloud.scene"\nversion = 1\n'
+BAD = {
+    "x = ": "expected a TOML file, got Invalid",
+    'format = "other"\nversion = 1': r'expected format = "refcloud.scene", version = 1',
+    HEAD: r"cloud: expected 1 to 1000 tables \[\[cloud\]\], got 0",
+    HEAD + "[cloud]": r"cloud: expected tables \[\[cloud\]\], got a dict",
+    HEAD + "[[clouds]]": "clouds: expected one of .*; did you mean cloud?",
+    HEAD + "[[cloud]]\nshap = 1": r"cloud\[0\].shap: .*did you mean shape?",
+    HEAD + "[[cloud]]\nscale = 0": r"cloud\[0\].scale: expected a finite number in \(0",
+    HEAD + "[[cloud]]\n[cloud.shape]\noctaves = 0": r"\[0\].shape.octaves: .*got 0",
+    HEAD + "[[cloud]]\n[cloud.balls]\ncount = 2.5": r"balls.count: expected a whole",
+    HEAD + "[[cloud]]\n[cloud.balls]\ngrid = 1": r"balls.grid: expected one of count",
+    HEAD + "[[cloud]]\n[cloud.look]\nerosion = 1": r"look.erosion: .*\[0, 1\)",
+    HEAD + "[[cloud]]\n[[sun]]\ndirection = [0, 1]": r"sun\[0\].direction: .*\(3,\)",
+    HEAD + "[[cloud]]\n[[sun]]\ndirection = [0, 0, 0]": "direction: .* is not zero",
+    HEAD + "[[cloud]]\n[medium]\nalbedo = 2": r"medium.albedo: expected .*\[0, 1\]",
+    HEAD + "[[cloud]]\n[look]\nlike = 'mann'": "look.like: expected one of 'cumulus'",
+    HEAD + "[[cloud]]\n[sky]\nbend = nan": "sky.bend: expected a finite number",
+    HEAD + "[[cloud]]\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]": "another place",
+    HEAD + "sky = 3\n[[cloud]]": r"sky: expected a table \[sky\], got 3",
+    HEAD + "name = 3\n[[cloud]]": "name: expected a text, got 3",
+}
+
+
+@pytest.mark.parametrize("text", BAD, ids=range(len(BAD)))
+def test_what_does_not_fit_is_refused_in_one_line(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(text)
+    with pytest.raises((ValueError, TypeError), match=BAD[text]) as refusal:
+        load_scene(path)
+    assert "\n" not in str(refusal.value)
+    assert str(refusal.value).startswith(f"{path}: ")
+
+
+def test_no_file_and_no_file_s_kind_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"expected a scene \(.toml\), got no"):
+        load_scene(tmp_path / "none.toml")
+    with pytest.raises(ValueError, match=r"expected a scene \(.toml\)"):
+        load_scene(tmp_path)
+
+
+def test_a_table_is_checked_by_annotations() -> None:
+    assert checked_table("medium", {"g": 0}, rc.Medium) == {"g": 0.0}
