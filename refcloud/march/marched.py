@@ -97,6 +97,7 @@ def marched(
         )
     refuse_unbounded(cloud, medium)
     _refuse_coarse(cloud, medium, origins)
+    suns, dark = without_dark(suns, medium)
     task = Task(
         cloud,
         lattice(cloud),
@@ -119,7 +120,7 @@ def marched(
     seen, through = completed(
         radiance, column, medium, mixing, task.ambient, background
     )
-    return Marched(seen, through, rows, notes + steep_note(cloud, medium))
+    return Marched(seen, through, dark + rows, notes + steep_note(cloud, medium))
 
 
 def _balls_marched(
@@ -142,6 +143,23 @@ def _balls_marched(
     found = exact_balls(balls, origins, directions, suns, lit, medium, mixing)
     light = np.zeros(3) if ambient is None else ambient
     return Marched(*completed(*found, medium, mixing, light, background))
+
+
+def without_dark(
+    suns: tuple[Sun, ...], medium: Medium
+) -> tuple[tuple[Sun, ...], tuple[Skipped, ...]]:
+    """Leave out suns that add nothing in any channel, and report them.
+
+    Parameters
+    ----------
+    suns, medium
+        The lights, and the albedo that they count with.
+    """
+    lit = tuple(sun for sun in suns if (sun.irradiance * medium.albedo_rgb).any())
+    dark = len(suns) - len(lit)
+    if not dark:
+        return suns, ()
+    return lit, (Skipped("light", "suns without light", dark, len(suns)),)
 
 
 def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:

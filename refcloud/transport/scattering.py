@@ -162,11 +162,10 @@ def scattered_light(
     kinds, channels = cases_of(medium, suns, above, below)
     plan, cloud, halvings = cut_out(grid, plan, max(s for s, _, _ in kinds))
     dtype = "float64" if plan.double else "float32"
-    columns = [sun_depths(cloud, sun.direction, dtype=dtype).density for sun in suns]
+    columns = [_columns(cloud, sun, sun.direction, dtype) for sun in suns]
     behind = []
     if medium.phase == "hg" and medium.g < 0.0:
-        back = [-sun.direction for sun in suns]
-        behind = [sun_depths(cloud, way, dtype=dtype).density for way in back]
+        behind = [_columns(cloud, sun, -sun.direction, dtype) for sun in suns]
     norms = [
         beam_norms(
             cloud, columns, behind, suns, Medium(s, a, medium.g, medium.phase), plan
@@ -208,6 +207,13 @@ def scattered_light(
         max((r for s in solutions for r in s.residuals), default=0.0),
         all(s.converged for s in solutions),
     )
+
+
+def _columns(cloud: VoxelGrid, sun: Sun, way: Array, dtype: Any) -> NDArray[Any]:
+    """Give the columns of density that a sun's light passes; none where it has none."""
+    if not sun.irradiance.any():
+        return np.zeros(cloud.density.shape, dtype)
+    return sun_depths(cloud, way, dtype=dtype).density
 
 
 @checked
