@@ -6,8 +6,10 @@ import dataclasses
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from refcloud import bench
+from refcloud.bench import stability
 from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import ready, say
 from refcloud.cli.parser import Command
@@ -42,12 +44,14 @@ PLOT = FileOption(
     " matplotlib.",
 )
 FIGURES = (".png",)
+STABILITY = "stability"  # a map of errors, without times
+NAMES = (*bench.SUBJECTS, STABILITY)
 
 
 def command() -> Command:
     """Give the command's argument and options."""
     made = Command("bench", ABOUT)
-    made.argument("WHAT", "what is measured: " + ", ".join(bench.SUBJECTS))
+    made.argument("WHAT", "what is measured: " + ", ".join(NAMES))
     made.group("the measurement", "", (*OPTIONS, PLOT))
     return made
 
@@ -56,13 +60,15 @@ def run(words: Sequence[str]) -> int:
     """Measure, and print the rows."""
     given = command().parse(words)
     (name,) = given.arguments
-    if name not in bench.SUBJECTS:
-        expected = "one of " + ", ".join(bench.SUBJECTS)
+    if name not in NAMES:
+        expected = "one of " + ", ".join(NAMES)
         raise ValueError(complaint("WHAT", expected, repr(name)))
-    subject, how = bench.SUBJECTS[name], Measurement(**given.of(OPTIONS))
-    figure = given.options.get(PLOT.flag)
+    how, figure = Measurement(**given.of(OPTIONS)), given.options.get(PLOT.flag)
     if figure is not None:
         figure = ready(figure, FIGURES, PLOT.flag)
+    if name == STABILITY:
+        return _stability(how, figure)
+    subject = bench.SUBJECTS[name]
     rows = bench.run(subject, how.quick)
     if how.json:
         say(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))
@@ -70,4 +76,17 @@ def run(words: Sequence[str]) -> int:
         say(bench.table(subject, rows))
     if figure is not None:
         say(str(bench.plot(subject, rows, figure)))
+    return 0
+
+
+def _stability(how: Measurement, figure: Path | None) -> int:
+    """Judge every cell of the map of stability; `quick` leaves out the slow probes."""
+    probes = [p for p in stability.PROBES if not (how.quick and p.slow)]
+    panels = stability.panels(probes)
+    if how.json:
+        say(json.dumps(stability.rows_of(panels), indent=1))
+    else:
+        say(stability.text_of(panels))
+    if figure is not None:
+        say(str(stability.labelled_map(panels).save(figure, tone="none")))
     return 0

@@ -43,7 +43,7 @@ class VoxelGrid:
         if not np.all(self.upper > self.lower):
             raise ValueError(
                 "upper: expected above lower on every axis,"
-                f" got {tuple(self.lower)} to {tuple(self.upper)}"
+                f" got {self.lower.tolist()} to {self.upper.tolist()}"
             )
         with np.errstate(over="ignore"):
             size = self.upper - self.lower
