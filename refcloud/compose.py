@@ -64,6 +64,7 @@ def draw_layers(
     seed: int = 0,
     observe: Observer | None = None,
     backend: Backend = "numpy",
+    kept: dict[Any, Any] | None = None,
 ) -> Picture:
     """Draw clouds one over the other, the farthest first; each is lit by itself.
 
@@ -81,6 +82,9 @@ def draw_layers(
         Largest error of a channel; every layer gets an equal share.
     seed, observe, backend
         As `render`.
+    kept
+        Each layer's light by its number: what an earlier call put there is taken again
+        where it still holds, the rest is put there.
 
     Returns
     -------
@@ -95,7 +99,8 @@ def draw_layers(
     rgba = np.zeros((camera.height, camera.width, 4))
     if behind is not None:
         rgba[..., :3], rgba[..., 3] = behind, 1.0
-    for layer in layers:
+    kept = {} if kept is None else kept
+    for number, layer in enumerate(layers):
         share = tolerance / len(layers)
         lit = layer.lit
         if lit is None:
@@ -105,8 +110,10 @@ def draw_layers(
                 medium=layer.medium,
                 look=layer.look,
                 tolerance=LIGHT * share,
+                earlier=kept.get(number),
                 observe=observe,
             )
+            kept.setdefault(number, lit)
         clock.stop("light")
         drawn, rows = eye_pass(
             lit,

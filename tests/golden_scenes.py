@@ -95,4 +95,9 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
     "man-14": partial(fitted, "man-14", "man-13"),
     "marched-map": marched_map,
     "multiple": partial(unfitted, "multiple", View(64, 48)),
+    **{
+        f"shader-{name}": partial(unfitted, f"shader-{name}", SMALL_VIEW)
+        for name in ("a", "b", "c", "d", "dome", "e", "fog", "lit")
+    },
+    "simple-sky": partial(unfitted, "simple-sky", SMALL_VIEW),
 }

@@ -26,7 +26,7 @@ FLOORS = (
     ("compose", "scene", "noise_pictures", "choices", "scattering_pictures"),
     ("march_picture",),
     ("render",),
-    ("scenes", "fit_pictures"),
+    ("scenes", "fit_pictures", "animation"),
     ("bench", "studio"),
     ("cli",),
     ("__main__",),

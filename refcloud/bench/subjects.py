@@ -6,9 +6,11 @@ from refcloud.bench.approximate import APPROXIMATE
 from refcloud.bench.march import MARCH
 from refcloud.bench.noise import NOISE
 from refcloud.bench.scattering import SCATTERING
+from refcloud.bench.skies import SKIES
 from refcloud.bench.splat import SPLAT
 from refcloud.bench.subject import Subject
 
 SUBJECTS: dict[str, Subject] = {
-    subject.name: subject for subject in (NOISE, APPROXIMATE, SPLAT, MARCH, SCATTERING)
+    subject.name: subject
+    for subject in (NOISE, APPROXIMATE, SPLAT, MARCH, SCATTERING, SKIES)
 }

@@ -24,6 +24,14 @@ from refcloud.march import Mixing
 from refcloud.noise_pictures import noise_picture
 
 # What each command takes its options from, and the parameters that words cannot give.
+PICTURES: list[tuple[Callable[..., Any], set[str]]] = [
+    (rc.Camera, {"width", "height"}),
+    (rc.Sun, set()),
+    (rc.Medium, set()),
+    (denser, {"cloud"}),
+    (Mixing, set()),
+    (rc.Picture.save, {"self", "path"}),
+]
 SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "generate": [(rc.generate, {"observe"})],
     "approximate": [(rc.approximate, {"grid", "observe"}), (Outputs, set())],
@@ -35,12 +43,26 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
                 "volumes",
             },
         ),
-        (rc.Camera, {"width", "height"}),
-        (rc.Sun, set()),
-        (rc.Medium, set()),
-        (denser, {"cloud"}),
-        (Mixing, set()),
-        (rc.Picture.save, {"self", "path"}),
+        *PICTURES,
+    ],
+    "animate": [
+        (
+            rc.render,
+            {
+                *("cloud", "camera", "suns", "medium", "haze", "mixing", "observe"),
+                *("volumes", "quality"),
+            },
+        ),
+        (rc.Moves, set()),
+        (
+            rc.animate,
+            {
+                name
+                for name in inspect.signature(rc.animate).parameters
+                if name not in ("frames", "fps", "jobs", "redraw")
+            },
+        ),
+        *PICTURES,
     ],
     "compare": [
         (rc.compare_codes, {"a", "b"}),
@@ -51,7 +73,10 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "bench": [(Measurement, set())],
 }
 RENAMED = {"direction": "sun"}
-OWN_DEFAULTS = {("render", "tolerance"): "1/255"}
+OWN_DEFAULTS = {
+    ("render", "tolerance"): "1/255",
+    ("animate", "tolerance"): "1/255",
+}
 PARAMETERS = [
     (command, source, name)
     for command, sources in SOURCES.items()
