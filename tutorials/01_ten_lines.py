@@ -43,7 +43,9 @@ def picture(
     width, tall = lesson.size(480, 360)
     camera = rc.Camera([3, -12, 112], [3, 15, 0], width=width, height=tall)
     sun = rc.Sun([-0.6, height, 0.4])
-    return rc.render(balls, suns=sun, camera=camera, tolerance=1 / 255)
+    return rc.render(
+        balls, suns=sun, camera=camera, tolerance=lesson.tolerance(1 / 255)
+    )
 
 
 lesson.show(picture, "01-cloud", "300 balls, fitted to a cloud map of seed 7")

@@ -72,7 +72,7 @@ lesson.source(plain_gradient.gradient_derivative)
 # %% [markdown]
 # The array forms are longer, since they share work between neighbours; their doors are
 # `noise.worley`, `noise.gradient` and `noise.simplex` for points, `..._grid` for grids.
-# For a point that has two neighbours in a row the same hash need not be taken twice.
+# A grid asks for each cell's hash once, however many points lie in it.
 
 # %%
 points = np.stack(np.meshgrid(np.arange(0, 4, 0.25), np.arange(0, 4, 0.25)), axis=-1)

@@ -106,7 +106,7 @@ def seen(lit: rc.LitMetaballs) -> rc.Picture:
     """Draw lit balls from the front."""
     width, height = lesson.size(320, 240)
     camera = rc.Camera([3, -4, 128], [3, 14, 0], width=width, height=height)
-    return rc.render(lit, camera=camera, tolerance=1 / 255)
+    return rc.render(lit, camera=camera, tolerance=lesson.tolerance(1 / 255))
 
 
 lit = rc.sunward(BALLS, (SUN,), medium=rc.Medium(1.2), look="cumulus")

@@ -54,7 +54,7 @@ def picture(
         medium=rc.Medium(1.2, 0.9, g, phase),
         background=EVENING,
         look=rc.Look(forward=0.5, erosion=0, relief=0),
-        tolerance=1 / 255,
+        tolerance=lesson.tolerance(1 / 255),
     )
 
 

@@ -143,8 +143,8 @@ lesson.row(
 # %%
 lesson.row(
     {
-        f"tolerance {t:.3g}": (lambda t=t: picture(tolerance=t, shown="picture"))
-        for t in (0.0, 1 / 255, 0.02, 0.05, 0.2)
+        f"tolerance {t:g}": (lambda t=t: picture(tolerance=t, shown="picture"))
+        for t in (0.0, 0.004, 0.02, 0.05, 0.2)
     },
     "12-strip",
     "Tolerances from 0 to a fifth of white",

@@ -20,7 +20,7 @@ from refcloud.camera import rays
 from refcloud.conventions import Range
 
 lesson = Lesson()
-CLOUD = rc.generate(seed=7, voxel=4.0 if lesson.quick else 2.0)
+CLOUD = rc.generate(seed=7, voxel=5.0 if lesson.quick else 2.0)
 
 
 def picture(
@@ -51,7 +51,7 @@ def picture(
         suns=rc.Sun([-0.6, sun_height, 0.4], [14.0, 13.3, 12.0]),
         medium=rc.Medium(sigma_t, 1.0, g, "hg"),
         ambient=[0.8 * sky, sky, 1.3 * sky],
-        tolerance=2 / 255,
+        tolerance=lesson.tolerance(2 / 255),
     )
 
 

@@ -21,6 +21,7 @@ from typing import Any
 from sheets import Sheet, sheet_of, side_by_side
 
 from refcloud import Picture
+from refcloud.cli.docstrings import summary
 from refcloud.cli.options import options_of
 from refcloud.cli.parser import Command
 from refcloud.conventions import Skipped
@@ -78,6 +79,14 @@ class Lesson:
         if self.quick:
             wide //= QUICK_SHARE
         return wide, round(wide * height / width)
+
+    def tolerance(self, allowed: float) -> float:
+        """Give the largest error that is allowed; none if quick.
+
+        Quick pictures are compared with stored ones, code by code: exact, they stay the
+        same whatever is saved another day.
+        """
+        return 0.0 if self.quick else allowed
 
     def show(self, what: Callable[..., Shown] | Shown, name: str, caption: str) -> Any:
         """Show a picture and write it as NAME.png; a function takes the run's flags.
@@ -158,7 +167,7 @@ class Lesson:
             return {}
         command = Command(
             self.script.name,
-            inspect.getdoc(picture) or "",
+            summary(picture),
             output="folder of the pictures; by default the current one",
             program="tutorial",
         )

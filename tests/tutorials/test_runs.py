@@ -12,10 +12,16 @@ import pytest
 from refcloud.image import compare_codes, read_png
 
 PATHS = page.tutorials()
-# Fits amplify what machines differ in (the last bits of matrix products), and a sample
-# chosen by a fit's rays may take another way: these are held by blocks of pixels.
-FITTED = ("01-cloud", "01-count", "08-balls", "08-phases", "08-strip")
+# Fits amplify what machines differ in, the last bits of matrix products; what is drawn
+# within a tolerance changes within it when a saving changes. These are held by the
+# means of blocks of pixels.
+LOOSELY = (
+    *("01-cloud", "01-count", "08-balls", "08-phases", "08-strip"),
+    *("12-strip", "15-strip", "17-multiple", "17-once", "17-strip", "17-orders"),
+)
 BLOCK, LOOSE = 8, 12.0  # pixels, and codes of a block's mean
+# Pictures of errors, each below a bound that the tutorial itself asserts.
+ERRORS = ("12-same", "15-error", "15-promise")
 
 
 @pytest.mark.slow
@@ -30,7 +36,9 @@ def test_a_tutorial_draws_its_stored_pictures(path: Path, tmp_path: Path) -> Non
             read_png(page.QUICK / f"{name}.png"),
         )
         assert new.shape == old.shape, name
-        if name in FITTED:
+        if name in ERRORS:
+            continue
+        if name in LOOSELY:
             assert np.abs(blocks(new) - blocks(old)).max() <= LOOSE, name
             continue
         found = compare_codes(old, new)
