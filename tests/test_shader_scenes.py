@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ SKIES = {
     "shader-b": shader.solid_sky,
     "shader-c": shader.plane_sky,
     "shader-dome": shader.textured_sky,
+    "shader-poles": partial(shader.textured_sky, surface=Sphere()),
     "shader-volume": shader.volume_sky,
 }
 
@@ -36,6 +38,14 @@ def test_every_scene_is_a_finite_picture_that_shows_something(name: str) -> None
     assert light.min() >= 0.0
     assert light.max() < 2.0
     assert np.std(light) > 0.05
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("size", [(1, 1), (7, 5)])
+def test_pictures_of_any_size_and_time(name: str, size: tuple[int, int]) -> None:
+    light = drawn(name, width=size[0], height=size[1], time=-3.3e5).linear
+    assert light.shape == (*size[::-1], 3)
+    assert np.isfinite(light).all()
 
 
 @pytest.mark.parametrize(("name", "draw"), SKIES.items(), ids=list(SKIES))
@@ -180,6 +190,18 @@ def test_the_bubble_hides_its_far_side() -> None:
     away = np.linalg.norm(mesh.points, axis=1)
     assert 0.58 <= away.min() < 1.0 < away.max() <= 1.42
     assert mesh.attributes.shape == (len(mesh.points), 6)
+
+
+def test_intermediates_can_be_looked_at() -> None:
+    for name, what in (
+        ("shader-dome", "texture"),
+        ("shader-volume", "volume"),
+        ("shader-lit", "transmittance"),
+        ("shader-d", "density"),
+    ):
+        seen: dict = {}
+        drawn(name, observe=seen.__setitem__)
+        assert np.asarray(seen[what]).size > 100
 
 
 def test_what_a_texture_has_no_use_for_is_refused() -> None:

@@ -9,8 +9,9 @@ from refcloud.bench.scattering import SCATTERING
 from refcloud.bench.skies import SKIES
 from refcloud.bench.splat import SPLAT
 from refcloud.bench.subject import Subject
+from refcloud.bench.triangles import TRIANGLES
 
 SUBJECTS: dict[str, Subject] = {
     subject.name: subject
-    for subject in (NOISE, APPROXIMATE, SPLAT, MARCH, SCATTERING, SKIES)
+    for subject in (NOISE, APPROXIMATE, SPLAT, MARCH, SCATTERING, TRIANGLES, SKIES)
 }

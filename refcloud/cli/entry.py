@@ -20,6 +20,7 @@ COMMANDS = {
     "generate": "refcloud.cli.generate",
     "approximate": "refcloud.cli.approximate",
     "render": "refcloud.cli.render",
+    "figure": "refcloud.cli.figure",
     "animate": "refcloud.cli.animate",
     "compare": "refcloud.cli.compare",
     "list": "refcloud.cli.scenes",

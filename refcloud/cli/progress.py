@@ -34,6 +34,10 @@ class Stages:
         minutes, seconds = divmod(round(left), 60)
         self._latest = f"{done} of {of}, {minutes}:{seconds:02} left"
 
+    def part(self, done: int, of: int) -> None:
+        """Take note of how many parts are done."""
+        self._latest = f"{done} of {of}"
+
     @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time what happens inside, with a sign of life where it takes long."""

@@ -36,7 +36,7 @@ from refcloud.raster.window import (
 
 Cull = Literal["FRONT", "BACK", "FRONT_AND_BACK"]
 Far = Annotated[float, Range(1e-100, 1e100, "scene units")]
-AT_ONCE = 1 << 20  # fragments that are sorted out together
+AT_ONCE = 1 << 17  # fragments that are sorted out together
 SHADED_AT_ONCE = 1 << 15  # their numbers then stay in the cache
 # Largest error of texels mixed in float32, of the largest among them: each of up to
 # four mixings rounds five times, by 2^-24 of at most twice that.
@@ -160,11 +160,11 @@ def draw_triangles(
     height, width = buffer.pixels.shape[:2]
     box = scissored(state, slice(0, height), slice(0, width), height, width)
     how = {"cull": cull, "near": near, "far": far, "tolerance": tolerance}
-    store = flattened(buffer)
+    store, scratch = flattened(buffer), np.empty(height * width, np.int64)
     for fragments in covered(camera, mesh, box, **how):
         pixel = (fragments.run.spans.row * width).take(fragments.span)
         pixel += fragments.column
-        for layer, left in layers(store, state, pixel, fragments):
+        for layer, left in layers(store, state, pixel, fragments, scratch):
             for part in pieces(layer, SHADED_AT_ONCE):
                 some = fragments.of(part)
                 depth = None if left.depth_func is None else some.depth

@@ -22,7 +22,11 @@ Some = Indices | slice  # of a list of fragments; a slice is free
 
 
 def layers(
-    store: Store, state: State, pixel: Indices, fragments: Fragments
+    store: Store,
+    state: State,
+    pixel: Indices,
+    fragments: Fragments,
+    scratch: Indices,
 ) -> Iterator[tuple[Some, State]]:
     """Sort out fragments, and note depths where no more needs to be known of them.
 
@@ -36,6 +40,8 @@ def layers(
         Row times width plus column of each, in drawing order, shape (n,).
     fragments
         The fragments.
+    scratch
+        One whole number for each pixel of the framebuffer, whatever it is.
 
     Yields
     ------
@@ -45,41 +51,49 @@ def layers(
     opaque = state.blending is None
     if opaque and (state.depth_func is None or store.depth is None):
         # Each hides what was there before: the last one shows.
-        yield _last(pixel, np.arange(len(pixel)), len(store.pixels)), state
+        last = _last(pixel, np.arange(len(pixel)), scratch)
+        yield _all(last, len(pixel)), state
     elif opaque and state.depth_func in ("LESS", "LEQUAL") and state.depth_mask:
-        seen = _nearest(store, state, pixel, fragments.depth)
+        seen = _nearest(store, state, pixel, fragments.depth, scratch)
         yield seen, dataclasses.replace(state, depth_func=None)
     else:
-        for layer in _in_turn(pixel, len(store.pixels)):
+        for layer in _in_turn(pixel, scratch):
             yield layer, state
 
 
-def _last(pixel: Indices, order: Indices, size: int) -> Some:
+def _last(pixel: Indices, order: Indices, scratch: Indices) -> Indices:
     """Keep of some fragments the last one of each pixel, in the order given."""
-    last = np.empty(size, np.intp)
-    last[pixel[order]] = order
-    kept = np.flatnonzero(last[pixel] == np.arange(len(pixel)))
-    return kept if len(kept) < len(pixel) else slice(0, len(pixel))
+    at = pixel.take(order)
+    scratch[at] = order
+    last = scratch.take(at) == order
+    return order if last.all() else order[last]
 
 
-def _nearest(store: Store, state: State, pixel: Indices, depth: Array) -> Some:
+def _nearest(
+    store: Store, state: State, pixel: Indices, depth: Array, scratch: Indices
+) -> Some:
     """Find the nearest fragment of each pixel: of equal ones LESS shows the first."""
     assert store.depth is not None
-    before = store.depth.copy()
+    before = store.depth.take(pixel)
     np.minimum.at(store.depth, pixel, depth)
-    seen = np.flatnonzero(depth == store.depth.take(pixel))
-    if len(seen) > np.count_nonzero(store.depth < before):  # equal depths, or old ones
-        if state.depth_func == "LESS":
-            seen = seen[depth[seen] < before[pixel[seen]]]
-        order = seen[::-1] if state.depth_func == "LESS" else seen
-        seen = np.sort(order[_last(pixel[order], np.arange(len(order)), len(before))])
-    return seen if len(seen) < len(pixel) else slice(0, len(pixel))
+    shows = depth == store.depth.take(pixel)
+    if state.depth_func == "LESS":
+        shows &= depth < before
+    seen = np.flatnonzero(shows)
+    if state.depth_func == "LESS":
+        return _all(_last(pixel, seen[::-1], scratch)[::-1], len(pixel))
+    return _all(_last(pixel, seen, scratch), len(pixel))
 
 
-def _in_turn(pixel: Indices, size: int) -> Iterator[Some]:
+def _all(seen: Indices, count: int) -> Some:
+    """Give all fragments as a slice, which is free; some as they are."""
+    return seen if len(seen) < count else slice(0, count)
+
+
+def _in_turn(pixel: Indices, scratch: Indices) -> Iterator[Some]:
     """Deal fragments out: the first of each pixel, then the second, and so on."""
     every = np.arange(len(pixel))
-    if isinstance(_last(pixel, every, size), slice):
+    if len(_last(pixel, every, scratch)) == len(pixel):
         yield slice(0, len(pixel))
         return
     # A fragment's turn is its place among those of its pixel.

@@ -17,12 +17,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
+from collections.abc import Callable
 from functools import partial
 
 from refcloud.camera import AnyCamera
-from refcloud.conventions import Array
+from refcloud.conventions import Skipped
 from refcloud.image import Picture
 from refcloud.noise import fbm
+from refcloud.noise.scattered import Numbers
 from refcloud.raster import Texture, sample
 from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.scenes.demand_plane import pair
@@ -32,12 +35,12 @@ from refcloud.scenes.shader_eyes import (
     in_single,
     kept_places,
     no_model,
+    observed,
     outlook,
     painted,
     precision,
     refuse_unused,
     texels,
-    timed,
 )
 from refcloud.sky import (
     SAME_SIGN,
@@ -54,6 +57,7 @@ from refcloud.sky import (
     shaded,
 )
 from refcloud.sky.places import Way
+from refcloud.sky.surfaces import Surface
 
 CLOUDS = Cover(0.01, 6.0, 1.05, -1.1, 0.35)
 FIRST_TRY = dataclasses.replace(SAME_SIGN, opacity_slope=6.0, light=0.35)
@@ -87,66 +91,44 @@ def plane_sky(
     model: Model, view: View, *, cover: Cover = CLOUDS, way: Way = "rays"
 ) -> Picture:
     """Draw the plane: simplex noise of x, z and time, evaluated for every pixel."""
-    refuse_unused(view)
-    camera = plane_eye(model, view)
 
-    def draw():
-        found = kept_places(view, camera, OVERHEAD, way)
+    def noise(at: Places) -> Numbers:
+        moved = at.coordinates - blown(view)[[0, 2]] / OVERHEAD.tile
+        return fbm(
+            moved,
+            kind="simplex",
+            time=view.time,
+            seed=FLAT_SEED,
+            octaves=OCTAVES,
+            dtype=precision(view),
+        )
 
-        def shade(at: Places) -> tuple[Array, Array]:
-            places = at.coordinates - blown(view)[[0, 2]] / OVERHEAD.tile
-            noise = fbm(
-                places,
-                kind="simplex",
-                time=view.time,
-                seed=FLAT_SEED,
-                octaves=OCTAVES,
-                dtype=precision(view),
-            )
-            return cloud_cover(noise, cover)
-
-        light = shaded(painted(camera, view), found, shade, fog=AIR)
-        rows = in_single(view, cover, len(found.distance))
-        return light, (*found.skipped, *rows), ()
-
-    return timed(draw)
+    return evaluated(view, plane_eye(model, view), OVERHEAD, noise, cover, way, AIR)
 
 
 def solid_sky(model: Model, view: View, *, way: Way = "rays") -> Picture:
     """Draw the sphere: classic noise of three coordinates and time at every pixel."""
-    refuse_unused(view)
-    camera = upward_eye(model, view)
 
-    def draw():
-        found = kept_places(view, camera, AROUND, way)
+    def noise(at: Places) -> Numbers:
+        return fbm(
+            SOLID_CELLS * (at.points - blown(view)),
+            kind="gradient",
+            time=view.time,
+            seed=SOLID_SEED,
+            octaves=OCTAVES,
+            period=SOLID_PERIOD,
+            dtype=precision(view),
+        )
 
-        def shade(at: Places) -> tuple[Array, Array]:
-            noise = fbm(
-                SOLID_CELLS * (at.points - blown(view)),
-                kind="gradient",
-                time=view.time,
-                seed=SOLID_SEED,
-                octaves=OCTAVES,
-                period=SOLID_PERIOD,
-                dtype=precision(view),
-            )
-            return cloud_cover(noise, CLOUDS)
-
-        light = shaded(painted(camera, view), found, shade)
-        rows = in_single(view, CLOUDS, len(found.distance))
-        return light, (*found.skipped, *rows), ()
-
-    return timed(draw)
+    return evaluated(view, upward_eye(model, view), AROUND, noise, CLOUDS, way)
 
 
 def volume_sky(model: Model, view: View, *, way: Way = "rays") -> Picture:
     """Draw the sphere with a texture in space, made anew for every time."""
-    refuse_unused(view)
-    camera = upward_eye(model, view)
+    rows: list[Skipped] = []
 
-    def draw():
-        found = kept_places(view, camera, AROUND, way)
-        volume, rows = fractal_volume(
+    def noise(at: Places) -> Numbers:
+        volume, left_out = fractal_volume(
             min(VOLUME, texels(view, 2 * VOLUME) // 2),
             cells=VOLUME_CELLS,
             time=view.time,
@@ -154,30 +136,25 @@ def volume_sky(model: Model, view: View, *, way: Way = "rays") -> Picture:
             octaves=OCTAVES,
             dtype=precision(view),
         )
+        rows.extend(left_out)
+        observed(view, "volume", volume)
         solid = Texture(volume[..., None], wrap="CLAMP_TO_EDGE")
+        # The sphere fills the texture from side to side.
+        return sample(solid, 0.5 + 0.5 * at.points)[:, 0]
 
-        def shade(at: Places) -> tuple[Array, Array]:
-            # The sphere fills the texture from side to side.
-            return cloud_cover(sample(solid, 0.5 + 0.5 * at.points)[:, 0], CLOUDS)
-
-        light = shaded(painted(camera, view), found, shade)
-        rows += in_single(view, CLOUDS, volume.size)
-        return light, (*found.skipped, *rows), ()
-
-    return timed(draw)
+    picture = evaluated(view, upward_eye(model, view), AROUND, noise, CLOUDS, way)
+    return dataclasses.replace(picture, skipped=(*rows, *picture.skipped))
 
 
 def textured_sky(
     model: Model, view: View, *, surface: Dome | Sphere = DOME, way: Way = "rays"
 ) -> Picture:
     """Draw a texture in the plane on the half-sphere, or wrapped around the sphere."""
-    refuse_unused(view)
-    on_dome = isinstance(surface, Dome)
-    camera = (upward_eye if on_dome else pole_eye)(model, view)
+    eye = upward_eye if isinstance(surface, Dome) else pole_eye
+    rows: list[Skipped] = []
 
-    def draw():
-        found = kept_places(view, camera, surface, way)
-        texture, rows = fractal_texture(
+    def noise(at: Places) -> Numbers:
+        texture, left_out = fractal_texture(
             texels(view, TEXTURE),
             cells=TEXTURE_CELLS,
             time=view.time,
@@ -185,16 +162,49 @@ def textured_sky(
             octaves=OCTAVES,
             dtype=precision(view),
         )
+        rows.extend(left_out)
+        observed(view, "texture", texture)
         scroll = blown(view)[[0, 2]] / DOME_REPEATS
+        return looked_up(texture, at.coordinates - scroll)
 
-        def shade(at: Places) -> tuple[Array, Array]:
-            return cloud_cover(looked_up(texture, at.coordinates - scroll), CLOUDS)
+    picture = evaluated(view, eye(model, view), surface, noise, CLOUDS, way)
+    return dataclasses.replace(picture, skipped=(*rows, *picture.skipped))
 
-        light = shaded(painted(camera, view), found, shade)
-        rows += in_single(view, CLOUDS, texture.size)
-        return light, (*found.skipped, *rows), ()
 
-    return timed(draw)
+def evaluated(
+    view: View,
+    camera: AnyCamera,
+    surface: Surface,
+    noise: Callable[[Places], Numbers],
+    cover: Cover,
+    way: Way,
+    fog: Fog | None = None,
+) -> Picture:
+    """Draw clouds on a surface before the clear sky: noise of the places it is seen at.
+
+    Parameters
+    ----------
+    view, camera
+        How, and from where.
+    surface, way
+        What the clouds are drawn on, and how its pixels are found.
+    noise
+        Gives noise, shape (N,), for the places that N pixels show.
+    cover, fog
+        How noise becomes cloud, and what is before it.
+
+    Returns
+    -------
+    The picture.
+    """
+    refuse_unused(view)
+    start = time.perf_counter()
+    found = kept_places(view, camera, surface, way)
+    behind = painted(camera, view)
+    light = shaded(behind, found, lambda at: cloud_cover(noise(at), cover), fog=fog)
+    seconds = {"sky": time.perf_counter() - start}
+    rows = (*found.skipped, *in_single(view, cover, len(found.distance)))
+    return Picture(light, None, rows, seconds)
 
 
 def covers(model: Model, view: View) -> Picture:

@@ -104,6 +104,12 @@ def timed(
     return Picture(light, None, tuple(skipped), seconds, tuple(notes))
 
 
+def observed(view: View, name: str, value: object) -> None:
+    """Hand an intermediate to whoever looks on."""
+    if view.observe is not None:
+        view.observe(name, value)
+
+
 def no_model() -> Model:
     """Make nothing before: noise is evaluated where it is seen."""
     return Model({})

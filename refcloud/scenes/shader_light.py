@@ -32,6 +32,7 @@ from refcloud.scenes.shader_eyes import (
     blown,
     kept_places,
     no_model,
+    observed,
     outlook,
     painted,
     precision,
@@ -96,6 +97,7 @@ def lit_layer(model: Model, view: View, *, direct: bool = False) -> Picture:
         light = np.tile(SKY_LIGHT, (len(moved), 1))
         for sun in suns:
             T = light_from_above(moved[cloud], pattern, LAYER, sun=sun.direction)
+            observed(view, "transmittance", T)
             light[cloud] += T[:, None] * sun.irradiance / WHOLE_SPHERE
         # Along the view, density falls from `risen` to 0 on the way up to the top.
         _, directions = rays(camera)

@@ -33,6 +33,7 @@ from refcloud.scenes.shader_eyes import (
     FRONT,
     SUN,
     no_model,
+    observed,
     painted,
     precision,
     refuse_unused,
@@ -86,7 +87,7 @@ def solid_and_mapped(model: Model, view: View) -> Picture:
     found = places(eye, BALL)
 
     def draw():
-        light = np.full((view.height, view.width, 3), 0.5)
+        light = np.full((view.height, view.width, 3), 0.06)
         for row, kind in enumerate(("gradient", "simplex")):
             for column, solid in enumerate((True, False)):
                 panel = ball_of_noise(found, kind, solid, view, suns)
@@ -133,6 +134,8 @@ def puff(model: Model, view: View) -> Picture:
         at = np.stack(np.meshgrid(x, y), axis=-1)
         how = {"time": view.time, "dtype": precision(view)}
         density = puff_density(at, PUFF, **how)
+
+        observed(view, "density", density)
 
         # 2. From each pixel toward the suns, looked up among the pixels, where it was
         #    drawn already (R09); around the picture there is none.

@@ -19,6 +19,7 @@ from refcloud.cli.bench import Measurement
 from refcloud.cli.clouds import denser
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
+from refcloud.cli.figure import Setting
 from refcloud.conventions import Range
 from refcloud.march import Mixing
 from refcloud.noise_pictures import noise_picture
@@ -68,6 +69,7 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
         (rc.compare_codes, {"a", "b"}),
         (rc.difference_picture, {"a", "b"}),
     ],
+    "figure": [(Setting, set())],
     "list": [],
     "noise": [(noise_picture, {"kind"})],
     "bench": [(Measurement, set())],
