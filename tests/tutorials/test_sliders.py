@@ -111,3 +111,10 @@ def test_what_does_not_fit_is_refused_in_one_line(
 def test_it_listens_on_this_machine_alone() -> None:
     with sliders.Server(picture, "title") as server:
         assert server.server_address[0] == "127.0.0.1"
+
+
+@pytest.mark.parametrize(
+    ("most", "step"), [(0.03, 0.02), (0.01, 0.01), (7.0, 5.0), (0.0099, 0.005)]
+)
+def test_steps_are_round(most: float, step: float) -> None:
+    assert sliders.round_step(most) == step
