@@ -151,7 +151,8 @@ python tutorials/01_ten_lines.py --count 30   # the main one, with another value
 python tutorials/01_ten_lines.py --sliders    # a page with a slider for each parameter
 ```
 
-In an editor that knows cells, or in a notebook, the pictures show where they are made.
+With `--quick` everything is small and fast, sliders too. In an editor that knows cells,
+or in a notebook, the pictures show where they are made.
 The pages below are written from the files by `python tutorials/page.py`.
 [For teachers](teachers.md): a course of eight sessions, and pictures that students'
 own code can be compared with.
