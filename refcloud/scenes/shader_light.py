@@ -186,7 +186,7 @@ def both_fogs(model: Model, view: View) -> Picture:
 enter(
     Scene(
         "shader-lit",
-        "document S: figure 2, a layer lit through its thickness",
+        "document S: section 5.1, of appendix B: a layer lit through its thickness",
         no_model,
         lit_layer,
         Motion(
@@ -201,7 +201,7 @@ enter(
 enter(
     Scene(
         "shader-fog",
-        "document S: fog on every object, as printed and mended",
+        "document S: section 5.1: fog on every object, as printed and mended",
         no_model,
         both_fogs,
         Motion(suns=(FRONT,), period=math.inf, repeats=NEVER),

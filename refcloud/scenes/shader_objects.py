@@ -248,6 +248,6 @@ for name, title, draw_one, motion in (
         bubble,
         Motion(bubble_eye, (FRONT,), period=math.inf),
     ),
-    ("raw", "raw pseudo-random numbers", raw, Motion()),
+    ("raw", "section 3.1: raw pseudo-random numbers", raw, Motion()),
 ):
     enter(Scene(f"shader-{name}", f"document S: {title}", no_model, draw_one, motion))

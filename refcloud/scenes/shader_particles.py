@@ -136,7 +136,7 @@ def draw(model: Model, view: View) -> Picture:
 enter(
     Scene(
         "shader-particles",
-        "document S: a field of clouds as particles",
+        "document S: section 2: a field of clouds as particles",
         particles,
         draw,
         Motion(eye, (SUN,), turns="in place", repeats=(np.inf, np.inf, np.inf)),
