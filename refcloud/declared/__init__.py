@@ -8,6 +8,7 @@ from refcloud.declared.kinds import (
     Kind,
     declared_kind,
     enter_kind,
+    told,
 )
 from refcloud.declared.reading import load_scene
 from refcloud.declared.writing import save_scene
@@ -24,4 +25,5 @@ __all__ = [
     "load_scene",
     "save_scene",
     "scene_from",
+    "told",
 ]

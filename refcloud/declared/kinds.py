@@ -22,6 +22,11 @@ def nothing_yet(of: Any) -> Model:
     return Model({})
 
 
+def told(draw: Callable[..., Picture], of: Any, model: Model, view: View) -> Picture:
+    """Call a drawing that takes its parameters by the name `of`."""
+    return draw(model, view, of=of)
+
+
 @dataclass(frozen=True)
 class Kind:
     """One way to draw, and the parameters that the scene of its name has.

@@ -37,13 +37,15 @@ from refcloud.noise.simplex_corners import SQUARED, _corners, _skews
 from refcloud.scene import View
 from refcloud.scenes.demand_plane import flat_alone
 from refcloud.scenes.shader_eyes import SUN
-from refcloud.scenes.shader_light import LAYER, noise_of
+from refcloud.scenes.shader_light import LIT, noise_of
 from refcloud.sky import base_density, light_from_above
 
 PLACE = np.array([0.98, 0.60])  # whose simplex figure 1 looks for
 UNIT = 104.0  # units of the drawing to one of the plane
 LINES, LONG = range(-3, 6), 12  # of the lattice, as far as they are drawn
 TINT = np.array([0.60, 0.76, 0.92])
+
+LAYER = LIT.layer
 
 # The cut of figure 2: along the sun's own direction on the ground, from this place on.
 ALONG, WIDE, EYE_BEHIND = 1.0, 2.4, 0.95  # scene units

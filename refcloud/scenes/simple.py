@@ -56,7 +56,7 @@ from refcloud.raster import (
     framebuffer,
 )
 from refcloud.scene import Model, Motion, View
-from refcloud.scenes.demand_plane import flat_alone, greys
+from refcloud.scenes.demand_plane import flat_alone, greys, still
 from refcloud.sky import sky_gradient
 
 MOST = 480.0  # what the sum of four octaves reaches
@@ -284,11 +284,6 @@ def scrolling(of: Sheet, *, blown: bool = False) -> Motion:
     period = 1.0 / of.step if of.step else 1.0
     repeats = (1.0, 1.0, math.inf) if blown else None
     return Motion(period=period, repeats=repeats)
-
-
-def still(of: Sheet) -> Motion:
-    """Move nothing."""
-    return Motion()
 
 
 for name, title, draw, motion in (
