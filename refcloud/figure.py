@@ -57,11 +57,13 @@ def enter_figure(figure: Figure) -> Figure:
 
 def figure_of(scene: Scene, number: str = "") -> Figure:
     """Make a figure of a scene; its title may begin with the document's number."""
-    head, colon, rest = scene.title.partition(": ")
-    if colon and head.startswith("document "):
-        head = ""
-    title = rest if colon else scene.title
-    return Figure(scene.name, number or (head if colon else ""), title, Drawn(scene))
+    title = scene.title
+    if title.startswith("document "):
+        title = title.partition(": ")[2]
+    head, colon, rest = title.partition(": ")
+    if colon:
+        number, title = number or head, rest
+    return Figure(scene.name, number, title, Drawn(scene))
 
 
 @dataclass(frozen=True)

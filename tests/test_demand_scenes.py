@@ -22,7 +22,7 @@ from refcloud.lighting import Look
 from refcloud.noise import worley_drawn, worley_grid, worley_smooth_grid
 from refcloud.optics import Medium, Sun
 from refcloud.render import render
-from refcloud.scene import SCENES, View
+from refcloud.scene import SCENES, Model, View
 from refcloud.scenes import demand, demand_hero, demand_plane
 from refcloud.scenes.demand_hero import HERO, Placed, seen_from, turned_sun
 from refcloud.sky import printed_gradient
@@ -54,7 +54,8 @@ def test_scenes_come_in_any_size(name: str, size) -> None:
 
 
 def test_n26_the_pictures_hold_the_numbers_of_the_document() -> None:
-    values = worley_drawn(64, 48, count=demand_plane.POINTS, seed=demand_plane.SEED)
+    dots = demand_plane.DOTS
+    values = worley_drawn(64, 48, count=dots.count, seed=dots.seed)
     shown, inverted = (
         255.0 * srgb_encode(drawn(name).linear[..., 0])
         for name in ("worley", "worley-inverted")
@@ -102,19 +103,19 @@ def test_r07_the_wrong_try_shows_the_texture_of_the_faces_alone() -> None:
     camera = demand.eye(VIEW)
     faces = drawn("faces").linear
     # The middle of the front wall: a pixel holds the texture there and nothing behind.
-    middle = np.array([[0.02, 0.03, demand.UPPER[2]]])
+    middle = np.array([[0.02, 0.03, demand.OWN.upper[2]]])
     x, y, _, _ = project(camera, middle)
     row, column = int(y[0]), int(x[0])
     inside = placed_texture(
-        worley_smooth_texture(**demand.TEXTURE),
-        demand.LOWER,
-        demand.UPPER,
+        worley_smooth_texture(64, cells=4, seed=2, threshold=0.45),
+        demand.FACES.lower,
+        demand.FACES.upper,
         repeats=(2, 1, 1),
     )
     right, up, back = axes(camera)
     scale = 2.0 * np.tan(0.5 * camera.fov_y) / camera.height
     way = (column + 0.5 - 32) * scale * right - (row + 0.5 - 24) * scale * up - back
-    t = (demand.UPPER[2] - camera.eye[2]) / way[2]
+    t = (demand.OWN.upper[2] - camera.eye[2]) / way[2]
     density = float(trilinear(inside, camera.eye + t * way - [0, 0, 1e-12]))
     shown = srgb_encode(faces[row, column])
     np.testing.assert_allclose(shown, 0.25 + 0.75 * density, rtol=0.0, atol=1e-9)
@@ -122,7 +123,8 @@ def test_r07_the_wrong_try_shows_the_texture_of_the_faces_alone() -> None:
 
 def test_r03_beers_law_alone_mixes_the_sky_with_white() -> None:
     sky = demand_plane.mended(VIEW)
-    scene = demand.boxed(demand.no_model(), VIEW, light=demand.UNLIT)
+    bare = dataclasses.replace(demand.QUAD, frame="none")
+    scene = demand.boxed(bare, Model({}), VIEW)
     share = (scene.linear - sky) / (1.0 - sky)
     # The same share in every channel, between none and all.
     np.testing.assert_allclose(share, share[..., :1] * np.ones(3), atol=1e-9)
@@ -132,7 +134,8 @@ def test_r03_beers_law_alone_mixes_the_sky_with_white() -> None:
 
 def test_f07_f08_the_box_is_the_cloud_between_its_walls() -> None:
     lit, framed, boxed = (drawn(name).linear for name in ("lit", "quad", "box"))
-    x, y, _, _ = project(demand.eye(VIEW), box_corners(demand.LOWER, demand.UPPER))
+    corners = box_corners(demand.OWN.lower, demand.OWN.upper)
+    x, y, _, _ = project(demand.eye(VIEW), corners)
     outside = np.ones((48, 64), bool)
     columns, rows = (slice(int(v.min()) - 1, int(v.max()) + 2) for v in (x, y))
     outside[rows, columns] = False
@@ -155,7 +158,7 @@ def test_the_pair_holds_the_same_cloud_twice() -> None:
 def test_light_comes_from_the_suns_that_are_given() -> None:
     dark, one, two = (
         drawn("lit", dataclasses.replace(VIEW, suns=suns)).linear
-        for suns in ((), (demand.LIGHT,), (demand.LIGHT, demand.LIGHT))
+        for suns in ((), (demand.OWN.sun,), (demand.OWN.sun, demand.OWN.sun))
     )
     np.testing.assert_array_equal(one, drawn("lit").linear)
     np.testing.assert_allclose(two - one, one - dark, rtol=0.0, atol=1e-12)
@@ -234,7 +237,7 @@ def test_the_hero_stands_over_its_field() -> None:
 
 ONE = {
     "camera": Camera([0, 0, 9], [0, 0, 0], width=8, height=6),
-    "suns": (demand.LIGHT,),
+    "suns": (demand.OWN.sun,),
     "medium": Medium(1.0),
     "look": Look(),
 }

@@ -21,7 +21,7 @@ SKIES = {
     "shader-b": shader.solid_sky,
     "shader-c": shader.plane_sky,
     "shader-dome": shader.textured_sky,
-    "shader-poles": partial(shader.textured_sky, surface=Sphere()),
+    "shader-poles": partial(shader.textured_sky, of=shader.WRAPPED),
     "shader-volume": shader.volume_sky,
 }
 
@@ -217,4 +217,4 @@ def test_surfaces_can_be_looked_at_from_anywhere() -> None:
     assert np.isfinite(drawn("shader-dome", camera=below).linear).all()
     out = Camera([0, 0, 5], [0, 0, 0], width=24, height=18)
     assert np.isfinite(drawn("shader-b", camera=out).linear).all()
-    assert isinstance(shader.AROUND, Sphere)
+    assert isinstance(shader.SOLID.surface, Sphere)

@@ -27,9 +27,9 @@ from refcloud.sky import Dome, Plane, Sphere, places
 WIDTH = 512
 TOLERANCE = 1.0 / 255.0  # the command line's
 SURFACES = (
-    ("plane", shader.OVERHEAD, shader.plane_eye),
-    ("sphere", shader.AROUND, shader.upward_eye),
-    ("half-sphere", shader.DOME, shader.upward_eye),
+    ("plane", shader.PLANE.surface, shader.plane_eye),
+    ("sphere", shader.SOLID.surface, shader.upward_eye),
+    ("half-sphere", shader.DOME.surface, shader.upward_eye),
 )
 FINENESS = 64
 

@@ -107,6 +107,8 @@ def _all(folder: Path, quality: str, jobs: int) -> int:
         rows = draw_all(names, quality, folder, jobs=jobs, tell=tell)
     for row in rows:
         say(f"{row.seconds:7.2f} s  {row.caption}")
+    computed = sum(row.cpu for row in rows)
+    say(f"{len(rows)} figures, {computed:.1f} s of computing")
     say(stages.line())
     say(str(folder / PAGE))
     return 0

@@ -14,13 +14,14 @@ from refcloud.cloudmap import VoxelGrid, generate
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Skipped
 from refcloud.declared.declaration import Cloud, Declaration
+from refcloud.declared.kinds import Changed, find_kind
 from refcloud.image import Picture
 from refcloud.lighting import Haze, named
 from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
 from refcloud.scene import Model, Motion, Scene, View
 
 
-def scene_from(declared: Declaration) -> Scene:
+def scene_from(declared: Declaration | Changed) -> Scene:
     """Make a scene of a declaration: its eye and suns may turn, wind may blow.
 
     Parameters
@@ -32,6 +33,9 @@ def scene_from(declared: Declaration) -> Scene:
     -------
     The scene; it is not entered into the table of names.
     """
+    if isinstance(declared, Changed):
+        kind = find_kind(declared.kind)
+        return kind.scene(declared.name, declared.title, declared.of)
     return Scene(
         declared.name,
         declared.title,

@@ -3,7 +3,8 @@
 Every table of the file is one function's or dataclass's parameters, under their own
 names: ``shape`` those of `generate`, ``balls`` those of `approximate`, ``camera``,
 ``sun``, ``medium``, ``look`` and ``sky`` the fields of those types. What is left out
-has the default that it has in Python.
+has the default that it has in Python. A file with a ``kind`` holds ``parameters`` of
+that kind instead, see `refcloud.declared.kinds`.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from refcloud.declared.declaration import (
     Declaration,
     Placement,
 )
+from refcloud.declared.kinds import Changed, find_kind
 from refcloud.lighting import Look, named
 from refcloud.metaballs import approximate
 from refcloud.optics import Medium, Sun
@@ -40,7 +42,7 @@ NOT_TYPED = ("observe", "grid", "width", "height")
 LookName = Literal["cumulus", "man"]
 
 
-def load_scene(path: str | Path) -> Declaration:
+def load_scene(path: str | Path) -> Declaration | Changed:
     """Read a scene's declaration, every number against the library's own range.
 
     Parameters
@@ -76,11 +78,13 @@ def load_scene(path: str | Path) -> Declaration:
         raise type(error)(f"{path}: {error}") from None
 
 
-def _declared(table: dict[str, Any]) -> Declaration:
-    kind = table.pop("format", None), table.pop("version", None)
-    if kind != (FORMAT, VERSION):
+def _declared(table: dict[str, Any]) -> Declaration | Changed:
+    form = table.pop("format", None), table.pop("version", None)
+    if form != (FORMAT, VERSION):
         expected = f'format = "{FORMAT}", version = {VERSION}'
-        raise ValueError(complaint("format", expected, f"{kind[0]!r}, {kind[1]!r}"))
+        raise ValueError(complaint("format", expected, f"{form[0]!r}, {form[1]!r}"))
+    if "kind" in table:
+        return _changed(table)
     known = ("name", "title", "camera", "sun", "medium", "look", "sky", "cloud")
     _refuse_unknown("", table, known)
     clouds = _tables("cloud", table.get("cloud", []))
@@ -105,6 +109,57 @@ def _declared(table: dict[str, Any]) -> Declaration:
         _look("look", table.get("look", {})),
         Sky(**checked_table("sky", sky, Sky)),
     )
+
+
+def _changed(table: dict[str, Any]) -> Changed:
+    """Read a scene of a kind: what the file leaves out, the kind's own scene has."""
+    _refuse_unknown("", table, ("kind", "name", "title", "parameters"))
+    kind = find_kind(check("kind", table["kind"], str))
+    return Changed(
+        check("name", table.get("name", kind.name), str),
+        check("title", table.get("title", ""), str),
+        kind.name,
+        nested("parameters", table.get("parameters", {}), kind.own),
+    )
+
+
+def nested(name: str, table: Any, own: Any) -> Any:
+    """Read a dataclass from a table; fields that are dataclasses have their own tables.
+
+    Parameters
+    ----------
+    name
+        What a refusal calls the table.
+    table
+        What the file holds.
+    own
+        An instance, which has what the table leaves out.
+
+    Returns
+    -------
+    One of the same type.
+
+    Raises
+    ------
+    ValueError, TypeError
+        A key is unknown, or its value does not fit.
+    """
+    hints = typing.get_type_hints(type(own), include_extras=True)
+    _refuse_unknown(f"{name}.", _table(name, table), hints)
+    given = {}
+    for key, value in table.items():
+        where, old = f"{name}.{key}", getattr(own, key)
+        if dataclasses.is_dataclass(old):
+            given[key] = nested(where, value, old)
+        elif isinstance(old, tuple) and old and dataclasses.is_dataclass(old[0]):
+            # Rows are whole: what they leave out, the type itself has by default.
+            given[key] = tuple(
+                type(old[0])(**checked_table(f"{where}[{k}]", row, type(old[0])))
+                for k, row in enumerate(_tables(where, value))
+            )
+        else:
+            given[key] = check(where, value, hints[key])
+    return dataclasses.replace(own, **given)
 
 
 def _look(name: str, table: Any) -> Look:

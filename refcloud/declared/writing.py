@@ -12,6 +12,7 @@ import numpy as np
 
 from refcloud.conventions import Array
 from refcloud.declared.declaration import FORMAT, VERSION, Declaration, Placement
+from refcloud.declared.kinds import Changed
 from refcloud.files import write_atomically
 from refcloud.lighting import named
 from refcloud.optics import Sun
@@ -20,8 +21,10 @@ from refcloud.sky import Sky
 DELETE, ESCAPED_DELETE = "\x7f", "\\u007f"  # JSON writes it as it is, TOML forbids it
 
 
-def save_scene(path: str | Path, scene: Declaration) -> Path:
+def save_scene(path: str | Path, scene: Declaration | Changed) -> Path:
     """Write a declaration as TOML; what has its default is left out.
+
+    Parameters of a kind are all written, so that they can be seen and changed.
 
     Parameters
     ----------
@@ -34,7 +37,8 @@ def save_scene(path: str | Path, scene: Declaration) -> Path:
     -------
     The path.
     """
-    text = "\n".join(_lines(scene)) + "\n"
+    lines = _kind_lines(scene) if isinstance(scene, Changed) else _lines(scene)
+    text = "\n".join(lines) + "\n"
     write_atomically(path, lambda file: file.write(text.encode()))
     return Path(path)
 
@@ -59,6 +63,33 @@ def _lines(scene: Declaration) -> list[str]:
             lines += _section("[cloud.balls]", cloud.balls)
         if cloud.look:
             lines += _section("[cloud.look]", cloud.look)
+    return lines
+
+
+def _kind_lines(scene: Changed) -> list[str]:
+    lines = [f'format = "{FORMAT}"', f"version = {VERSION}"]
+    lines += [f"kind = {_value(scene.kind)}"]
+    lines += [f"name = {_value(scene.name)}", f"title = {_value(scene.title)}"]
+    return [*lines, *_nested("parameters", scene.of)]
+
+
+def _nested(name: str, thing: Any, marks: str = "[]") -> list[str]:
+    """Write a dataclass as a table, its plain fields before those with tables."""
+    fields = {f.name: getattr(thing, f.name) for f in dataclasses.fields(thing)}
+    rows = {
+        key: value
+        for key, value in fields.items()
+        if isinstance(value, tuple) and value and dataclasses.is_dataclass(value[0])
+    }
+    inner = {k: v for k, v in fields.items() if dataclasses.is_dataclass(v)}
+    plain = {k: v for k, v in fields.items() if k not in rows and k not in inner}
+    half = len(marks) // 2
+    lines = _section(f"{marks[:half]}{name}{marks[half:]}", plain)
+    for key, value in inner.items():
+        lines += _nested(f"{name}.{key}", value)
+    for key, values in rows.items():
+        for value in values:
+            lines += _nested(f"{name}.{key}", value, "[[]]")
     return lines
 
 

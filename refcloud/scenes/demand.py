@@ -14,13 +14,14 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from refcloud.camera import Camera, rays
-from refcloud.checking import complaint
+from refcloud.checking import check_fields, complaint
 from refcloud.cloudmap import (
     VoxelGrid,
     box_cloud,
@@ -29,40 +30,140 @@ from refcloud.cloudmap import (
     trilinear,
     worley_smooth_texture,
 )
-from refcloud.conventions import WHOLE_SPHERE, Array
+from refcloud.conventions import (
+    WHOLE_SPHERE,
+    Array,
+    Positive,
+    Range,
+    Seed,
+    Shape,
+    Vector,
+)
+from refcloud.declared import Kind, enter_kind
 from refcloud.image import Picture, srgb_decode
 from refcloud.lighting import Octaves, octave_march
 from refcloud.march import ray_box
 from refcloud.optics import Medium, Sun
 from refcloud.raster import Framebuffer, draw_box
 from refcloud.raster.walls import LIGHT_BLUE
-from refcloud.scene import Model, Motion, Scene, View, enter
-from refcloud.scenes.demand_plane import mended, no_model, pair, plain, refuse_given
+from refcloud.scene import Model, Motion, View
+from refcloud.scenes.demand_plane import mended, pair, plain, refuse_given
 
-# The box by its rear left lower and front right upper corner, and the cloud in it.
-LOWER, UPPER = np.array([-1.5, -0.75, -0.8]), np.array([1.5, 0.75, 0.8])
-CLOUD = {"cell": 0.36, "seed": 2, "threshold": 0.3, "edge": np.array([1.0, 0.6, 0.7])}
 VOXEL, COARSEST = 0.02, 0.1  # scene units: of a picture 1024 pixels wide; at most
-EYE, TARGET, FOV_Y = (2.5, 0.9, 4.6), (0.0, -0.05, 0.0), 0.533
-LIGHT = Sun(np.array([-0.62, 0.62, 0.42]), 1.3 * WHOLE_SPHERE * np.ones(3))
-MEDIUM = Medium(13.0, 1.0, 0.2, "hg")
-TEXTURE = {"size": 64, "cells": 4, "seed": 2, "threshold": 0.45}
-
-# Light models. Beer's law alone: every place shines white, whatever lies before it.
 DARK, NO_WALL = np.zeros(3), np.zeros(4)
+
+
+@dataclass(frozen=True)
+class Lumps:
+    """The cloud in the box: what `refcloud.cloudmap.box_cloud` takes.
+
+    Attributes
+    ----------
+    cell
+        Between the points of the Worley noise.
+    seed
+        Which points.
+    threshold
+        Noise below it is empty.
+    edge
+        How far from each wall density is taken away, as shares of the box's halves.
+    """
+
+    cell: Annotated[float, Positive]
+    seed: Seed
+    threshold: Annotated[float, Range(0.0, 1.0, open_upper=True)]
+    edge: Annotated[Array, Shape(3), Range(0.0, 1.0)]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
+class Boxed:
+    """A cloud in its box.
+
+    Attributes
+    ----------
+    lower, upper
+        The box by its rear left lower and front right upper corner.
+    cloud
+        What stands in it.
+    eye, target, fov_y
+        The camera; of a picture 4 to 3.
+    sun, medium
+        What the cloud is lit by and made of.
+    light
+        How light is scattered in it.
+    shone
+        Whether a sun shines at all; by Beer's law alone every place shines by itself.
+    frame
+        What of the box is drawn.
+    """
+
+    lower: Vector
+    upper: Vector
+    cloud: Lumps
+    eye: Vector
+    target: Vector
+    fov_y: Annotated[float, Range(0.01, 3.1, "radians")]
+    sun: Sun
+    medium: Medium
+    light: Octaves
+    shone: bool
+    frame: Literal["walls", "lines", "none"]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
+class Faces:
+    """The wrong try: a texture on a box, by what `worley_smooth_texture` takes."""
+
+    lower: Vector
+    upper: Vector
+    size: Annotated[int, Range(4, 256, "texels")]
+    cells: Annotated[int, Range(1, 64)]
+    seed: Seed
+    threshold: Annotated[float, Range(0.0, 1.0, open_upper=True)]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+# Light models: single scattering, with light from the sky; or every place shines white,
+# whatever lies before it.
+LIT = Octaves(1, backward_share=0.0)
 UNLIT = Octaves(1, sky_light=np.ones(3), ground_light=DARK, sky_extinction=0.0)
-LIT = Octaves(1, backward_share=0.0)  # single scattering, with light from the sky
+OWN = Boxed(
+    lower=np.array([-1.5, -0.75, -0.8]),
+    upper=np.array([1.5, 0.75, 0.8]),
+    cloud=Lumps(cell=0.36, seed=2, threshold=0.3, edge=np.array([1.0, 0.6, 0.7])),
+    eye=np.array([2.5, 0.9, 4.6]),
+    target=np.array([0.0, -0.05, 0.0]),
+    fov_y=0.533,
+    sun=Sun(np.array([-0.62, 0.62, 0.42]), 1.3 * WHOLE_SPHERE * np.ones(3)),
+    medium=Medium(13.0, 1.0, 0.2, "hg"),
+    light=LIT,
+    shone=True,
+    frame="none",
+)
+WALLED = dataclasses.replace(OWN, frame="walls")
+QUAD = dataclasses.replace(OWN, frame="lines", light=UNLIT, shone=False)
+FACES = Faces(OWN.lower, OWN.upper, size=64, cells=4, seed=2, threshold=0.45)
 
 
-def cloud_in_box(view: View) -> VoxelGrid:
+def cloud_in_box(of: Boxed, view: View) -> VoxelGrid:
     """Make the cloud, as fine as the picture shows it."""
+    lower, upper = of.lower, of.upper
+    lumps = {f.name: getattr(of.cloud, f.name) for f in dataclasses.fields(Lumps)}
     if view.offset is not None:
         # The noise is fixed in the world: wind through the box is the box moved against
         # it. Lumps come in at one wall and leave at the other, so all of them stay.
-        against = LOWER - view.offset, UPPER - view.offset
-        blown = box_cloud(*against, voxel=fineness(view), **CLOUD)
-        return VoxelGrid(blown.density, LOWER, UPPER)
-    grid = box_cloud(LOWER, UPPER, voxel=fineness(view), **CLOUD)
+        against = lower - view.offset, upper - view.offset
+        blown = box_cloud(*against, voxel=fineness(view), **lumps)
+        return VoxelGrid(blown.density, lower, upper)
+    grid = box_cloud(lower, upper, voxel=fineness(view), **lumps)
     # Single lumps near the walls would hang in the air as beads.
     return VoxelGrid(largest_part(grid.density), grid.lower, grid.upper)
 
@@ -73,57 +174,53 @@ def fineness(view: View) -> float:
 
 
 def boxed(
-    model: Model,
-    view: View,
-    *,
-    light: Octaves = LIT,
-    frame: Literal["walls", "lines", "none"] = "none",
-    behind: Callable[[View], Array] = mended,
+    of: Boxed, model: Model, view: View, *, behind: Callable[[View], Array] = mended
 ) -> Picture:
     """Draw the cloud between what lies behind it and what lies before it."""
     marched_alone(view)
     if view.scattering == "multiple":
         expected = "single beside a figure of document D, whose light is in octaves"
         raise ValueError(complaint("scattering", expected, "multiple"))
-    if light is UNLIT:
+    if not of.shone:
         refuse_given(view, ("suns", "scattering"), "a cloud without light")
-    camera = view.camera or eye(view)
+    camera = view.camera or eye(view, of)
     size = dataclasses.replace(view, width=camera.width, height=camera.height)
     seconds, start = {}, time.perf_counter()
-    grid = cloud_in_box(size)
+    grid = cloud_in_box(of, size)
     seconds["generate"], start = time.perf_counter() - start, time.perf_counter()
     buffer = over_opaque(behind(size))
-    wall = NO_WALL if frame == "lines" else LIGHT_BLUE
-    if frame != "none":
-        draw_box(buffer, camera, LOWER, UPPER, "behind", wall_color=wall)
-    suns = () if light is UNLIT else view.suns
+    wall = NO_WALL if of.frame == "lines" else LIGHT_BLUE
+    if of.frame != "none":
+        draw_box(buffer, camera, of.lower, of.upper, "behind", wall_color=wall)
+    suns = (of.sun,) if view.suns is None else view.suns
     L, T, skipped = octave_march(
         grid,
         camera,
-        suns=(LIGHT,) if suns is None else suns,
-        medium=view.medium or MEDIUM,
-        octaves=light,
+        suns=suns if of.shone else (),
+        medium=view.medium or of.medium,
+        octaves=of.light,
         step=fineness(size),
         tolerance=view.tolerance,
         seed=view.seed,
         observe=view.observe,
     )
     buffer.pixels[..., :3] = L + T[..., None] * buffer.pixels[..., :3]
-    if frame != "none":
-        draw_box(buffer, camera, LOWER, UPPER, "before", wall_color=wall)
+    if of.frame != "none":
+        draw_box(buffer, camera, of.lower, of.upper, "before", wall_color=wall)
     seconds["march"] = time.perf_counter() - start
     note = f"cloud: {np.count_nonzero(grid.density)} voxels"
     return Picture(buffer.pixels[..., :3], None, skipped, seconds, (note,))
 
 
-def faces(model: Model, view: View) -> Picture:
+def faces(of: Faces, model: Model, view: View) -> Picture:
     """Draw the texture where rays enter the box: it is seen on the faces alone."""
     refuse_given(view, ("suns", "medium", "look", "scattering"), "a texture on faces")
     camera = view.camera or eye(view)
     size = dataclasses.replace(view, width=camera.width, height=camera.height)
-    grid = placed_texture(
-        worley_smooth_texture(**TEXTURE), LOWER, UPPER, repeats=(2, 1, 1)
+    texture = worley_smooth_texture(
+        of.size, cells=of.cells, seed=of.seed, threshold=of.threshold
     )
+    grid = placed_texture(texture, of.lower, of.upper, repeats=(2, 1, 1))
     origins, directions = rays(camera)
     t0, t1 = ray_box(origins, directions, lower=grid.lower, upper=grid.upper)
     hit = t1 > t0
@@ -133,31 +230,32 @@ def faces(model: Model, view: View) -> Picture:
     light = mended(size)
     light[hit] = srgb_decode(np.clip(0.25 + 0.75 * density, 0.0, 1.0))[:, None]
     buffer = over_opaque(light)
-    draw_box(buffer, camera, LOWER, UPPER, "before", wall_color=NO_WALL)
+    draw_box(buffer, camera, of.lower, of.upper, "before", wall_color=NO_WALL)
     return Picture(buffer.pixels[..., :3])
 
 
-def backgrounds(model: Model, view: View) -> Picture:
+def backgrounds(of: Boxed, model: Model, view: View) -> Picture:
     """Draw the cloud before a plain background, and before the gradient."""
-    return pair(view, partial(boxed, model, behind=plain), partial(boxed, model))
+    right = partial(boxed, of, model)
+    return pair(view, partial(right, behind=plain), right)
 
 
-def eye(view: View) -> Camera:
+def eye(view: View, of: Boxed = OWN) -> Camera:
     """Look at the box from the front, a little from the right and above."""
     # A narrow picture shows as much of the box's width, and more above and below.
     taller = max(1.0, 4.0 / 3.0 * view.height / view.width)
     return Camera(
-        np.array(EYE),
-        np.array(TARGET),
-        fov_y=2.0 * math.atan(taller * math.tan(0.5 * FOV_Y)),
+        of.eye,
+        of.target,
+        fov_y=2.0 * math.atan(taller * math.tan(0.5 * of.fov_y)),
         width=view.width,
         height=view.height,
     )
 
 
-def own_eye(model: Model, view: View) -> Camera:
+def own_eye(model: Model, view: View, *, of: Boxed = OWN) -> Camera:
     """Give the scene's own camera."""
-    return eye(view)
+    return eye(view, of)
 
 
 def over_opaque(light: Array) -> Framebuffer:
@@ -170,19 +268,23 @@ def marched_alone(view: View) -> None:
     refuse_given(view, ("look",), "a scene that is marched")
 
 
-NEVER = (math.inf, math.inf, math.inf)  # the noise in the box does not repeat
-BLOWN = Motion(own_eye, (LIGHT,), repeats=NEVER)
-UNLIT_BLOWN = Motion(own_eye, (), repeats=NEVER)
-for name, title, draw, motion in (
-    ("box", "the box, its walls and the cloud", partial(boxed, frame="walls"), BLOWN),
-    ("faces", "the wrong try, a texture on the faces", faces, Motion(own_eye)),
-    (
-        "quad",
-        "the cloud by Beer's law alone",
-        partial(boxed, frame="lines", light=UNLIT),
-        UNLIT_BLOWN,
-    ),
-    ("lit", "the cloud, lit", boxed, BLOWN),
-    ("background", "a plain background and the sky", backgrounds, BLOWN),
+def blown(of: Boxed) -> Motion:
+    """Turn eye and sun, and blow wind through the box, whose noise never repeats."""
+    never = (math.inf, math.inf, math.inf)
+    suns = (of.sun,) if of.shone else ()
+    return Motion(partial(own_eye, of=of), suns, repeats=never)
+
+
+def turning(of: Faces) -> Motion:
+    """Turn the eye alone."""
+    return Motion(own_eye)
+
+
+for name, title, own, draw, motion in (
+    ("box", "the box, its walls and the cloud", WALLED, boxed, blown),
+    ("faces", "the wrong try, a texture on the faces", FACES, faces, turning),
+    ("quad", "the cloud by Beer's law alone", QUAD, boxed, blown),
+    ("lit", "the cloud, lit", OWN, boxed, blown),
+    ("background", "a plain background and the sky", OWN, backgrounds, blown),
 ):
-    enter(Scene(f"demand-{name}", f"document D: {title}", no_model, draw, motion))
+    enter_kind(Kind(f"demand-{name}", f"document D: {title}", own, draw, motion))

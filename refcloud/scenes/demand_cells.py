@@ -19,7 +19,7 @@ GRID, POINT, MARK = (0.02, 0.18, 0.60), (0.75, 0.05, 0.02), (1.0, 0.32, 0.02)
 INSIDE = 0.35  # how far the nine cells are tinted
 
 
-def cells_overlay(width: int, height: int, *, seed: int) -> Array:
+def cells_overlay(width: int, height: int, *, seed: int, across: int = ACROSS) -> Array:
     """Draw noise, cells, points, and the nine cells that one pixel looks into.
 
     Parameters
@@ -28,13 +28,15 @@ def cells_overlay(width: int, height: int, *, seed: int) -> Array:
         Size of the picture, pixels.
     seed
         Which points.
+    across
+        Cells along the longer side.
 
     Returns
     -------
     Linear RGB, shape (height, width, 3).
     """
     # 1. The noise, black at the points, a picture of whole pixels per cell.
-    edge = max(width, height) / ACROSS
+    edge = max(width, height) / across
     x: Array = np.asarray((np.arange(width) + 0.5) / edge, np.float64)
     y: Array = np.asarray((np.arange(height) + 0.5) / edge, np.float64)
     grey = worley_grid(x, y, seed=seed, normalize="clip")
@@ -51,14 +53,14 @@ def cells_overlay(width: int, height: int, *, seed: int) -> Array:
     # 3. The borders of the cells.
     size = {"width": width, "height": height}
     thick = max(1, round(width / 512))
-    for k in range(1, ACROSS):
+    for k in range(1, across):
         at = k * edge
         for start, end in (([at, 0], [at, height]), ([0, at], [width, at])):
             line = line_pixels(np.array(start), np.array(end), thickness=thick, **size)
             light[line] = GRID
 
     # 4. The point of every cell, and the way from the pixel to the nearest.
-    i, j = np.meshgrid(np.arange(ACROSS + 1), np.arange(ACROSS + 1))
+    i, j = np.meshgrid(np.arange(across + 1), np.arange(across + 1))
     points = np.stack([i, j], axis=-1) + worley_points(i, j, seed=seed)
     points = points.reshape(-1, 2)
     pixel = np.array([px, py])

@@ -13,39 +13,40 @@ import dataclasses
 import functools
 import math
 import time
-from typing import Literal, NamedTuple
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated, Literal
 
 import numpy as np
 
 from refcloud.camera import AnyCamera, Camera, OrthographicCamera, axes
+from refcloud.checking import check_fields
 from refcloud.cloudmap import VoxelGrid, billows
 from refcloud.compose import merged
-from refcloud.conventions import WHOLE_SPHERE, Array, Skipped
+from refcloud.conventions import (
+    WHOLE_SPHERE,
+    Array,
+    Positive,
+    Range,
+    Seed,
+    Skipped,
+    Vector,
+)
+from refcloud.declared import Kind, enter_kind
 from refcloud.image import Picture
 from refcloud.lighting import Octaves, block_means, octave_march, solved_march
 from refcloud.lighting.octave_march import SINGLE_PRECISION
 from refcloud.optics import Medium, Sun
-from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.scene import Model, Motion, View
 from refcloud.scenes import cumulus
 from refcloud.scenes.demand import marched_alone
-from refcloud.scenes.demand_plane import no_model
 from refcloud.sky import Sky, clear_sky
 from refcloud.transport import PLANS, ScatteredLight, scattered_light
 from refcloud.transport.scattering import report_of
 
-SUN = Sun(
-    np.array([-0.62, 0.62, 0.42]),
-    0.95 * WHOLE_SPHERE * np.array([1.0, 0.95, 0.86]),
-)
-MEDIUM = Medium(1.5, 1.0, 0.6, "hg")  # of the light in octaves
-# Of solved light: so dense that the skin alone shows, and a little dark in its folds.
-SOLVED_MEDIUM = Medium(5.0, 0.96, 0.3, "hg")
-SOLVED_SUN = Sun(SUN.direction, 0.68 * SUN.irradiance)
-SOLVED_SKY = 1.2  # times the light from sky and ground of the octaves
-# Its map's voxels along the longest axis, of the large cloud and of a small one.
-VOXELS, FIELD_VOXELS = 96, 40
-# Its plan, whatever the tolerance of the picture: that chooses its precision alone.
-PLAN = PLANS["quick"]
+# The solution's plan, whatever the picture's tolerance: that chooses its precision
+# alone; and its map's voxels along the longest axis, of the large and a small cloud.
+PLAN, VOXELS, FIELD_VOXELS = PLANS["quick"], 96, 40
 VOXEL_PIXELS = 2.0  # of a picture, where the cloud is
 FINEST, COARSEST = 0.22, 1.6  # scene units of the cloud's own
 KEPT_FROM = (
@@ -53,39 +54,104 @@ KEPT_FROM = (
 )
 
 
-class Placed(NamedTuple):
-    """A cloud of the scene: which, where, how large, how turned, in how much air."""
+@dataclass(frozen=True)
+class Placed:
+    """A cloud of the scene: which, where, how large, how turned, in how much air.
 
-    seed: int
-    x: float
-    z: float
-    scale: float
-    turn: float  # radians about y
-    air: float  # scene units over which its light falls to 1/e
+    Attributes
+    ----------
+    seed
+        Which cloud.
+    x, z
+        Its place on the ground.
+    scale
+        Factor on its size.
+    turn
+        About y.
+    air
+        Distance over which its light falls to 1/e.
+    """
+
+    seed: Seed
+    x: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
+    z: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
+    scale: Annotated[float, Positive] = 1.0
+    turn: Annotated[float, Range(-7.0, 7.0, "radians")] = 0.0
+    air: Annotated[float, Positive] = cumulus.FIELD_AIR
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
+class Hero:
+    """A large cloud over small ones.
+
+    Attributes
+    ----------
+    eye, target
+        The camera.
+    hero, field
+        The large cloud, and the small ones.
+    sun, medium
+        The light, and what clouds are made of.
+    sky
+        Times the light from sky and ground of the octaves.
+    octave_sun, octave_medium
+        Those of light that is scattered in octaves.
+    """
+
+    eye: Vector
+    target: Vector
+    hero: Placed
+    field: tuple[Placed, ...]
+    sun: Sun
+    medium: Medium
+    sky: Annotated[float, Range(0.0, 100.0)]
+    octave_sun: Sun
+    octave_medium: Medium
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 # The large cloud's seed and turn were chosen by eye among 16 and two.
-HERO = Placed(6, 0.0, 0.0, 1.0, math.radians(20.0), cumulus.HERO_AIR)
-FIELD = tuple(
-    Placed(seed, x, z, scale, 0.0, cumulus.FIELD_AIR)
-    for seed, x, z, scale in cumulus.FIELD
+HERO = Placed(6, turn=math.radians(20.0), air=cumulus.HERO_AIR)
+FIELD = tuple(Placed(seed, x, z, scale) for seed, x, z, scale in cumulus.FIELD)
+SUN = Sun(
+    np.array([-0.62, 0.62, 0.42]),
+    0.95 * WHOLE_SPHERE * np.array([1.0, 0.95, 0.86]),
+)
+OWN = Hero(
+    eye=np.array(cumulus.EYE),
+    target=np.array(cumulus.TARGET),
+    hero=HERO,
+    field=FIELD,
+    sun=Sun(SUN.direction, 0.68 * SUN.irradiance),
+    # So dense that the skin alone shows, and a little dark in its folds.
+    medium=Medium(5.0, 0.96, 0.3, "hg"),
+    sky=1.2,
+    octave_sun=SUN,
+    octave_medium=Medium(1.5, 1.0, 0.6, "hg"),
 )
 
 
-def draw(model: Model, view: View) -> Picture:
+def draw(of: Hero, model: Model, view: View) -> Picture:
     """Generate, light and march the clouds, the farthest first."""
     marched_alone(view)
-    camera = view.camera or cumulus.camera(view)
+    camera = view.camera or own_eye(model, view, of=of)
     solved = (view.scattering or best(view)) == "multiple"
-    suns = (SOLVED_SUN if solved else SUN,) if view.suns is None else view.suns
-    medium = view.medium or (SOLVED_MEDIUM if solved else MEDIUM)
+    sun, medium = of.octave_sun, view.medium or of.octave_medium
+    if solved:
+        sun, medium = of.sun, view.medium or of.medium
+    suns = (sun,) if view.suns is None else view.suns
     seconds = {"sky": 0.0, "generate": 0.0, "march": 0.0}
     start = time.perf_counter()
     light = clear_sky(camera, Sky())
     seconds["sky"] = time.perf_counter() - start
     skipped: list[Skipped] = []
     notes, lights = [], []
-    clouds = farthest_first(camera)
+    clouds = farthest_first(camera, of)
     for placed in clouds:
         start = time.perf_counter()
         voxel = fineness(camera, placed)
@@ -103,7 +169,7 @@ def draw(model: Model, view: View) -> Picture:
         here = seen_from(camera, placed)
         theirs = tuple(turned_sun(sun, placed.turn) for sun in suns)
         if solved:
-            lights.append(light_in(grid, placed, theirs, medium, view))
+            lights.append(light_in(grid, placed, theirs, medium, view, of))
             L, T, rows = solved_march(grid, here, light=lights[-1], **how)
         else:
             how |= {"suns": theirs, "medium": medium, "octaves": Octaves()}
@@ -115,7 +181,7 @@ def draw(model: Model, view: View) -> Picture:
         seconds["generate"] += middle - start
         seconds["march"] += time.perf_counter() - middle
         skipped += [*grid.skipped, *rows]
-        what = "cloud" if placed is HERO else "field"
+        what = "cloud" if placed is of.hero else "field"
         voxels = np.count_nonzero(grid.density)
         notes.append(f"{what}: {voxels} voxels of {voxel:.2g}")
     if lights:
@@ -131,17 +197,22 @@ def best(view: View) -> Literal["single", "multiple"]:
 
 
 def light_in(
-    grid: VoxelGrid, placed: Placed, suns: tuple[Sun, ...], medium: Medium, view: View
+    grid: VoxelGrid,
+    placed: Placed,
+    suns: tuple[Sun, ...],
+    medium: Medium,
+    view: View,
+    of: Hero,
 ) -> ScatteredLight:
     """Solve the light in a cloud, on a map as coarse as smooth light needs."""
     octaves = Octaves()
-    most = VOXELS if placed is HERO else FIELD_VOXELS
+    most = VOXELS if placed is of.hero else FIELD_VOXELS
     light = scattered_light(
         block_means(grid, most=min(most, max(grid.density.shape) // 2)),
         suns,
         medium=medium,
-        sky=SOLVED_SKY * octaves.sky_light,
-        ground=SOLVED_SKY * octaves.ground_light,
+        sky=of.sky * octaves.sky_light,
+        ground=of.sky * octaves.ground_light,
         plan=dataclasses.replace(PLAN, double=view.tolerance < SINGLE_PRECISION),
     )
     if view.observe is not None:
@@ -171,10 +242,10 @@ def distance(camera: AnyCamera, placed: Placed) -> float:
     return math.sqrt(float(way @ way))
 
 
-def farthest_first(camera: AnyCamera) -> list[Placed]:
+def farthest_first(camera: AnyCamera, of: Hero = OWN) -> list[Placed]:
     """Order the clouds for one eye: none of them reaches through another."""
     return sorted(
-        (*FIELD, HERO), key=lambda placed: distance(camera, placed), reverse=True
+        (*of.field, of.hero), key=lambda placed: distance(camera, placed), reverse=True
     )
 
 
@@ -205,12 +276,16 @@ def turned(vector: Array, turn: float) -> Array:
     return np.array([c * x - s * z, y, s * x + c * z])
 
 
-enter(
-    Scene(
-        "demand",
-        "a marched cumulus over a field of small ones",
-        no_model,
-        draw,
-        Motion(cumulus.eye, (SUN,)),
-    )
+def own_eye(model: Model, view: View, *, of: Hero) -> Camera:
+    """Look up at the cloud from below, the horizon just under the picture."""
+    return Camera(of.eye, of.target, width=view.width, height=view.height)
+
+
+def turning(of: Hero) -> Motion:
+    """Turn eye and sun."""
+    return Motion(partial(own_eye, of=of), (of.octave_sun,))
+
+
+enter_kind(
+    Kind("demand", "a marched cumulus over a field of small ones", OWN, draw, turning)
 )

@@ -7,9 +7,12 @@ cloud of figure 4.
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
-from refcloud.camera import project
+from refcloud.camera import Camera, project
 from refcloud.cloudmap import VoxelGrid, cell_size, generate
 from refcloud.conventions import Array
 from refcloud.drawing import (
@@ -45,6 +48,7 @@ from refcloud.scenes.demand_plane import flat_alone
 NEURONS = 6
 CENTRES = 1000
 OVERLAP = man.OVERLAP
+TURNED, LIFTED, CLOSER = 0.55, 0.32, 0.72  # of figure 7's eye: radians, shares
 
 
 def small_cloud() -> VoxelGrid:
@@ -84,10 +88,12 @@ def network(view: View) -> Picture:
         w = ", ".join(f"{v:.1f}" for v in net.centers[k].round(1) + 0.0)
         sigma = net.radii[k] / OVERLAP
         text = f"w {w}; sigma {sigma:.1f}"
-        words(canvas, (inner, y - 25.0), text, size=9, anchor="mm", halo=WHITE)
-        at = y + 0.27 * (middle - y)
+        words(canvas, (inner, y - 24.0), text, size=10, anchor="mm", halo=WHITE)
+        # Beside its connection, on the side that this one bends away from.
+        at = y + 38.0 / (last - inner) * (middle - y)
+        aside = -11.0 if y <= middle else 11.0
         text = f"v {net.densities[k]:.2f} times {says[k]:.2f}"
-        words(canvas, (inner + 96.0, at - 9.0), text, size=9, anchor="mm", halo=WHITE)
+        words(canvas, (inner + 38.0, at + aside), text, size=10)
     # 4. The output: their sum, beside the density that the voxel has.
     disc(canvas, (last, middle), 18.0, WHITE)
     ring(canvas, (last, middle), 18.0)
@@ -96,10 +102,14 @@ def network(view: View) -> Picture:
     total = float(field(net, point[None])[0])
     words(canvas, (last, middle + 34.0), f"net {total:.2f}", anchor="mm")
     words(canvas, (last, middle + 50.0), f"voxel {true:.2f}", anchor="mm")
+    for k, line in enumerate(("asked at the voxel where", "the heaviest neuron sits")):
+        place = last, middle + 76.0 + 14.0 * k
+        words(canvas, place, line, size=10, anchor="mm")
     for x, name in ((76.0, "input"), (inner, "RBF neurons"), (last, "output")):
         words(canvas, (x, canvas.height - 14.0), name, size=13, anchor="mm")
     note = f"net of {len(net)} neurons at one voxel: {total:.3f}, the voxel {true:.3f}"
-    return canvas.picture(note)
+    where = "that voxel: where the heaviest neuron sits, so that it has much to say"
+    return canvas.picture(note, where)
 
 
 def asked_voxel(grid: VoxelGrid, net: Metaballs) -> tuple[Array, float]:
@@ -133,15 +143,18 @@ def _neuron(
 
 
 def centres(view: View) -> Picture:
-    """Draw figure 7: the voxels, and the centres that phase 1 moves among them."""
+    """Draw figure 7: the voxels, and the centres that phase 1 moves among them.
+
+    The eye stands aside, so that rows of voxels do not hide each other.
+    """
     flat_alone(view)
     canvas = blank(view.width, view.height)
     balls = voxel_balls(man.cloud_map())
     found = adaptive_kmeans(balls.centers, CENTRES, seed=man.SEED)
-    camera = framed(balls, view.width, view.height)
+    camera = aside(framed(balls, view.width, view.height))
     for points, radius, color, share in (
-        (balls.centers, 1.6, GREY, 0.4),
-        (found.centers, 2.6, BLUE, 1.0),
+        (balls.centers, 1.8, GREY, 0.4),
+        (found.centers, 3.4, BLUE, 1.0),
     ):
         x, y, depth, _ = project(camera, points)
         near = (depth.max() - depth) / max(float(np.ptp(depth)), 1e-300)
@@ -153,6 +166,15 @@ def centres(view: View) -> Picture:
     text = f"{len(balls)} voxels, {len(found.centers)} centres"
     words(canvas, (320.0, canvas.height - 16.0), text, anchor="mm")
     return canvas.picture(f"{text} after {found.epochs} epochs")
+
+
+def aside(camera: Camera) -> Camera:
+    """Turn an eye about its target, to the right and up, and fill the paper."""
+    way = camera.eye - camera.target
+    c, s = math.cos(TURNED), math.sin(TURNED)
+    turned = np.array([c * way[0] + s * way[2], way[1], c * way[2] - s * way[0]])
+    turned[1] += LIFTED * float(np.hypot(*way[[0, 2]]))
+    return replace(camera, eye=camera.target + turned, fov_y=CLOSER * camera.fov_y)
 
 
 for name, number, title, draw in (

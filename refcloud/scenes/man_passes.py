@@ -1,12 +1,14 @@
 """Figures 11 and 12 of paper M: the two passes, seen from the side, on a real cloud.
 
 The sun, the eye and the drawing lie in one plane, so that rays are seen at their true
-length. Beside each drawing stands the framebuffer of that pass, with the areas that the
-balls cover in it: those that pass 1 reads back, and those that pass 2 draws.
+length. Beside each drawing stands the framebuffer of that pass: in its middle, with the
+area of the ball whose turn it is, and after it with the areas of all. Pass 1 reads an
+area back before it draws a ball there, pass 2 only draws.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 
@@ -21,9 +23,11 @@ from refcloud.drawing import (
     GREY,
     ORANGE,
     RED,
+    WHITE,
     Canvas,
     arrow,
     blank,
+    box,
     disc,
     image,
     polyline,
@@ -42,13 +46,18 @@ from refcloud.scenes.demand_plane import flat_alone
 from refcloud.scenes.man_net import small_cloud
 
 BALLS, SIDE = 9, 64  # of the cloud; pixels of both framebuffers
+TURN = 5  # whose turn it is where a framebuffer is shown in the middle of a pass
 DIRECTION = np.array([-0.6, 0.8, 0.0])  # toward the sun, in the plane of the drawing
 # The paper's rules; a ball of its tau, 8, hands on nearly all light, and none is dark.
 TAU = 2.0
 MEDIUM, LOOK = Medium(1.0, ALBEDO_MAN2003), replace(named("man"), tau=TAU)
 BRIGHT = 6.0 * WHOLE_SPHERE  # so that balls of that depth show as bright as clouds
 SKY = np.array([0.42, 0.58, 0.80])
-EYE_AT, FOV_Y = 2.9, 0.72  # reaches of the cloud; radians
+EYE_AT, FOV_Y = 2.1, 0.84  # reaches of the cloud; radians
+NUMBER = 15.0  # units between the numbers of balls, at least
+# The drawing from the side lies left, both framebuffers right, all around the middle.
+LEFT, RIGHT, EDGE = 206.0, 533.0, 196.0
+SAID = f"tau is {TAU:g} for each ball; the paper's 8 would hand on nearly all light"
 
 
 @dataclass(frozen=True)
@@ -88,8 +97,10 @@ def first(view: View) -> Picture:
     middle, reach = middle_of(balls)
     seen = light_view(balls, DIRECTION, SIDE)
     tau = np.full(len(balls), TAU)
-    reached, buffer = carried_literally(seen, tau, ALBEDO_MAN2003, LOOK, LOOK.forward)
-    side = Side(canvas, middle, (204.0, 0.62 * canvas.height), 116.0 / reach)
+    how = tau, ALBEDO_MAN2003, LOOK, LOOK.forward
+    reached, buffer = carried_literally(seen, *how)
+    scale = 150.0 / reach
+    side = Side(canvas, middle, (LEFT + 44.0, 0.5 * canvas.height + 62.0), scale)
     # 1. The light's framebuffer lies across its rays; a ball's area is where it reads.
     camera, _ = light_camera(balls, DIRECTION, SIDE)
     up, half = axes(camera)[1], 0.5 * camera.height_of_view
@@ -100,25 +111,38 @@ def first(view: View) -> Picture:
 
     polyline(canvas, [on_buffer(0.0), on_buffer(SIDE)], BLACK, 3.0)
     for k in seen.order:
-        ends = seen.y[k] - seen.radius[k], seen.y[k] + seen.radius[k]
-        low, high = (on_buffer(float(y)) for y in ends)
-        for end, pixel in ((low, ends[0]), (high, ends[1])):
+        mine = k == seen.order[TURN - 1]
+        ink, wide = (RED, 1.6) if mine else (ORANGE, 0.7)
+        for pixel in (seen.y[k] - seen.radius[k], seen.y[k] + seen.radius[k]):
             there = balls.centers[k] + up * half * 2.0 * (seen.y[k] - pixel) / SIDE
-            polyline(canvas, [end, side.place(there)], ORANGE, 0.7, share=0.6)
+            ends = [on_buffer(float(pixel)), side.place(there)]
+            polyline(canvas, ends, ink, wide, share=1.0 if mine else 0.6)
     # 2. The balls, as bright as the light that reaches them, with their order.
     _balls(side, balls, reached, seen.order)
-    for k in seen.order[:1]:
-        arrow(canvas, on_buffer(float(seen.y[k])), side.place(balls.centers[k]), RED)
-    sun = on_buffer(0.5 * SIDE)
-    words(canvas, (sun[0] - 6.0, sun[1] - 14.0), "light", size=13, anchor="rm")
-    # 3. The framebuffer after the pass, with the areas that were read back.
-    text = "the light's framebuffer, and the areas read back"
-    _buffer(canvas, buffer.pixels[..., :3], seen.x, seen.y, seen.radius, text)
-    words(canvas, (195.0, canvas.height - 16.0), "near to far", anchor="mm")
+    # 3. Where the light comes from.
+    sun = on_buffer(0.5 * SIDE) - np.array([0.0, 6.0])
+    away = side.scale * 0.34 * reach * np.array([DIRECTION[0], -DIRECTION[1]])
+    arrow(canvas, sun + away, sun, ORANGE, 2.5)
+    words(canvas, (*(sun + away - [0.0, 12.0]),), "light", size=14, anchor="mm")
+    # 4. The framebuffer in the middle of the pass, and after it.
+    before = replace(seen, order=seen.order[: TURN - 1])
+    half_way = carried_literally(before, *how)[1].pixels[..., :3]
+    areas = seen.x, seen.y, seen.radius
+    share = reached[seen.order[TURN - 1]]
+    _buffers(
+        canvas,
+        half_way,
+        f"ball {TURN} reads a mean of {share:.2f}",
+        buffer.pixels[..., :3],
+        f"after ball {len(balls)}: every area read",
+        *areas,
+        seen.order,
+    )
+    _said(canvas, "pass 1, near to far: read back, draw, next ball")
     note = (
         f"pass 1: {len(balls)} balls, the darkest gets {reached.min():.2f} of the light"
     )
-    return canvas.picture(note)
+    return canvas.picture(note, SAID)
 
 
 def second(view: View) -> Picture:
@@ -129,74 +153,127 @@ def second(view: View) -> Picture:
     seen = light_view(balls, DIRECTION, SIDE)
     tau = np.full(len(balls), TAU)
     reached, _ = carried_literally(seen, tau, ALBEDO_MAN2003, LOOK, LOOK.forward)
-    sun = Sun(DIRECTION, np.full(3, BRIGHT))
-    lit = LitMetaballs(
-        balls,
-        (sun,),
-        reached[None, :, None] * sun.irradiance,
-        np.zeros((len(balls), 3)),
-        MEDIUM,
-        LOOK,
-        (),
-    )
     eye = middle + EYE_AT * reach * np.array([-math.cos(0.15), -math.sin(0.15), 0.0])
     camera = Camera(eye, middle, fov_y=FOV_Y, width=SIDE, height=SIDE)
-    behind = np.broadcast_to(SKY, (SIDE, SIDE, 3))
-    rgba, _ = eyeward(lit, camera, background=behind)
-    x, y, depth, scale = project(camera, balls.centers)
+    x, y, depth, size = project(camera, balls.centers)
     order = np.argsort(-depth, kind="stable")
-    side = Side(canvas, middle, (258.0, 0.5 * canvas.height), 84.0 / reach)
+    scale = 128.0 / reach
+    side = Side(canvas, middle, (LEFT + 80.0, 0.5 * canvas.height + 14.0), scale)
     # 1. The picture plane before the eye, and a ray to each ball through its pixel.
     _, up, back = axes(camera)
-    plane = eye - 0.9 * reach * back
-    half = 0.9 * reach * math.tan(0.5 * FOV_Y)
+    plane = eye - 0.8 * reach * back
+    half = 0.8 * reach * math.tan(0.5 * FOV_Y)
     ends = [side.place(plane + sign * half * up) for sign in (1.0, -1.0)]
     polyline(canvas, ends, BLACK, 3.0)
     for k in order:
+        ink, wide = (RED, 1.6) if k == order[TURN - 1] else (BLUE, 0.8)
         through = plane + up * half * (1.0 - 2.0 * float(y[k]) / SIDE)
         path = [side.place(p) for p in (eye, through, balls.centers[k])]
-        polyline(canvas, path, BLUE, 0.8, share=0.7)
+        polyline(canvas, path, ink, wide, share=0.8)
     _balls(side, balls, reached, order)
     # 2. Where the light comes from, and who looks.
-    tip = middle + 1.2 * reach * DIRECTION
-    arrow(
-        canvas, side.place(tip + 0.5 * reach * DIRECTION), side.place(tip), ORANGE, 2.0
-    )
+    tip = side.place(middle + 1.1 * reach * DIRECTION)
+    away = side.scale * 0.4 * reach * np.array([DIRECTION[0], -DIRECTION[1]])
+    arrow(canvas, tip + away, tip, ORANGE, 2.5)
+    words(canvas, (*(tip + away - [0.0, 12.0]),), "light", size=14, anchor="mm")
     at = side.place(eye)
     disc(canvas, at, 5.0, BLACK)
-    words(canvas, (at[0] + 2.0, at[1] + 18.0), "eye", size=13, anchor="mm")
-    # 3. The picture, with the area of each ball.
-    text = "the picture, and the area of each ball"
-    _buffer(canvas, rgba[..., :3], x, y, balls.radii * scale, text)
-    words(canvas, (262.0, canvas.height - 16.0), "far to near", anchor="mm")
-    return canvas.picture(f"pass 2: {len(balls)} balls, from far to near")
+    words(canvas, (at[0] + 2.0, at[1] + 18.0), "eye", size=14, anchor="mm")
+    # 3. The picture with the farthest balls, and with all.
+    half_way = _seen(balls, reached, camera, order[: TURN - 1])
+    areas = x, y, balls.radii * size
+    _buffers(
+        canvas,
+        half_way,
+        f"ball {TURN} is drawn over {TURN - 1} farther ones",
+        _seen(balls, reached, camera, order),
+        f"after ball {len(balls)}: the picture",
+        *areas,
+        order,
+    )
+    _said(canvas, "pass 2, far to near: each ball shines toward the eye")
+    return canvas.picture(f"pass 2: {len(balls)} balls, from far to near", SAID)
+
+
+def _seen(
+    balls: Metaballs, reached: Array, camera: Camera, chosen: NDArray[np.intp]
+) -> Array:
+    """Draw some of the balls before the sky, each lit as the whole cloud lights it."""
+    some = Metaballs(
+        balls.centers[chosen],
+        balls.radii[chosen],
+        balls.densities[chosen],
+        balls.kernel,
+    )
+    sun = Sun(DIRECTION, np.full(3, BRIGHT))
+    light = reached[chosen][None, :, None] * sun.irradiance
+    dark = np.zeros((len(some), 3))
+    lit = LitMetaballs(some, (sun,), light, dark, MEDIUM, LOOK, ())
+    behind = np.broadcast_to(SKY, (SIDE, SIDE, 3))
+    return eyeward(lit, camera, background=behind)[0][..., :3]
 
 
 def _balls(side: Side, balls: Metaballs, light: Array, order: NDArray[np.intp]) -> None:
     """Draw the balls from back to front, each with its place in the order."""
-    turn = {int(k): number for number, k in enumerate(order, 1)}
     for k in np.argsort(balls.centers[:, 2], kind="stable"):
         place, radius = side.place(balls.centers[k]), float(balls.radii[k] * side.scale)
         disc(side.canvas, place, radius, np.full(3, 0.9 * float(light[k])), share=0.55)
         ring(side.canvas, place, radius, BLACK, 1.0)
-    for k in range(len(balls)):
-        place = side.place(balls.centers[k])
-        words(side.canvas, place, str(turn[k]), RED, size=13, anchor="mm")
+    places = _apart(np.array([side.place(balls.centers[k]) for k in order]))
+    for number, place in enumerate(places, 1):
+        mine = number == TURN
+        disc(side.canvas, place, 0.5 * NUMBER, WHITE, share=0.85)
+        ink = RED if mine else BLACK
+        words(side.canvas, place, str(number), ink, size=13, anchor="mm")
 
 
-def _buffer(
-    canvas: Canvas, light: Array, x: Array, y: Array, radius: Array, text: str
+def _apart(places: Array) -> Array:
+    """Push places apart until none is nearer to another than a number is wide."""
+    places = places.copy()
+    for _ in range(60):
+        for i, j in itertools.combinations(range(len(places)), 2):
+            way = places[j] - places[i]
+            far = float(np.hypot(*way))
+            if far < NUMBER:
+                push = way / far if far > 0.0 else np.array([1.0, 0.0])
+                places[i] -= 0.5 * (NUMBER - far) * push
+                places[j] += 0.5 * (NUMBER - far) * push
+    return places
+
+
+def _buffers(
+    canvas: Canvas,
+    half_way: Array,
+    above: str,
+    after: Array,
+    below: str,
+    x: Array,
+    y: Array,
+    radius: Array,
+    order: NDArray[np.intp],
 ) -> None:
-    """Lay a framebuffer into the right of the drawing, with the balls' areas on it."""
-    edge = 236.0
-    left, top = 640.0 - edge - 10.0, 0.5 * (canvas.height - edge)
-    image(canvas, light, (left, top), (left + edge, top + edge))
-    pixel = edge / SIDE
-    for k in range(len(x)):
-        place = left + pixel * float(x[k]), top + pixel * float(y[k])
-        ring(canvas, place, pixel * float(radius[k]), GREY, 1.0, share=0.8)
-        disc(canvas, place, 1.8, RED)
-    words(canvas, (left + 0.5 * edge, top - 12.0), text, size=9, anchor="mm")
+    """Lay two framebuffers into the right of the drawing, with the balls' areas."""
+    left, pixel = RIGHT - 0.5 * EDGE, EDGE / SIDE
+    for light, text, down, shown in (
+        (half_way, above, -EDGE - 14.0, order[TURN - 1 : TURN]),
+        (after, below, 30.0, order),
+    ):
+        top = 0.5 * canvas.height + down
+        lower, upper = (left, top), (left + EDGE, top + EDGE)
+        image(canvas, light, lower, upper)
+        box(canvas, lower, upper, GREY, 1.0)
+        for k in shown:
+            ink, wide = (RED, 2.0) if k == order[TURN - 1] else (GREY, 1.0)
+            place = left + pixel * float(x[k]), top + pixel * float(y[k])
+            ring(canvas, place, pixel * float(radius[k]), ink, wide, share=0.9)
+        words(canvas, (RIGHT, top - 10.0), text, size=11, anchor="mm")
+
+
+def _said(canvas: Canvas, text: str) -> None:
+    """Write below the drawing what the pass does, and at which depth."""
+    low = 0.5 * canvas.height + 208.0
+    words(canvas, (LEFT, low), text, size=13, anchor="mm")
+    words(canvas, (LEFT, low + 18.0), SAID, size=10, anchor="mm")
 
 
 for name, number, title, draw in (

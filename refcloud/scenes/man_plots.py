@@ -55,7 +55,9 @@ def octaves(view: View) -> Picture:
         upper = middle - 0.5 * edge, top + 28.0
         image(canvas, panel, upper, (upper[0] + edge, upper[1] + edge))
         size = f"{PERSISTENCE**column:g}"
-        text = f"octave {column}, times {size}" if row == 0 else f"sum of {column + 1}"
+        text = f"octave {column}, times {size}"
+        if row == 1:
+            text = f"|sum| of {column + 1}" if column else "|octave 0|"
         words(canvas, (middle, top + 16.0), text, anchor="mm")
     return canvas.picture()
 

@@ -8,52 +8,90 @@ from __future__ import annotations
 
 import dataclasses
 import time
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated
 
 import numpy as np
 
+from refcloud.camera import Camera
+from refcloud.checking import check_fields
 from refcloud.choices import AMBIENT
 from refcloud.cloudmap import generate
-from refcloud.conventions import WHOLE_SPHERE
+from refcloud.conventions import WHOLE_SPHERE, Positive, Range, Seed, Vector
+from refcloud.declared import Kind, enter_kind
 from refcloud.image import Picture
 from refcloud.march.quadrature import grid_through_the_middle
 from refcloud.march_picture import draw_march
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.scene import Model, Motion, View
 from refcloud.scenes import cumulus
 from refcloud.sky import Sky
 
-# The sun of the other pictures, at a strength that leaves the brightest parts white.
-LATE_MORNING = Sun(
-    np.array([-0.62, 0.62, 0.42]), 0.5 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89])
-)
-THICKNESS, G = 24.0, 0.6  # optical depth through the middle; clouds scatter forward
 # Edge of a voxel, scene units times pixels of width: a picture and its cloud are as
 # fine as each other, between these edges.
 FINENESS, FINEST, COARSEST = 380.0, 0.8, 4.0
 
 
-def no_model() -> Model:
-    """Make nothing yet: how fine the cloud is, its picture says."""
-    return Model({})
+@dataclass(frozen=True)
+class Multiple:
+    """A marched cumulus with every order of scattering.
+
+    Attributes
+    ----------
+    seed
+        Which cloud.
+    eye, target
+        The camera.
+    sun
+        The light.
+    thickness
+        Optical depth through the cloud's middle.
+    g
+        Mean cosine of scattering.
+    """
+
+    seed: Seed
+    eye: Vector
+    target: Vector
+    sun: Sun
+    thickness: Annotated[float, Positive]
+    g: Annotated[float, Range(-1.0, 1.0, open_lower=True, open_upper=True)]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
-def draw(model: Model, view: View) -> Picture:
+OWN = Multiple(
+    seed=cumulus.SEED,
+    eye=np.array(cumulus.EYE),
+    target=np.array(cumulus.TARGET),
+    # The sun of the other pictures, so strong that the brightest parts are white.
+    sun=Sun(
+        np.array([-0.62, 0.62, 0.42]), 0.5 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89])
+    ),
+    thickness=24.0,
+    g=0.6,
+)
+
+
+def draw(of: Multiple, model: Model, view: View) -> Picture:
     """Generate the cloud, solve its light and march it."""
     if view.look is not None:
         raise ValueError(complaint("look", "none beside marched light", "one"))
-    camera = view.camera or cumulus.camera(view)
+    camera = view.camera or own_eye(model, view, of=of)
     start = time.perf_counter()
     voxel = float(np.clip(FINENESS / camera.width, FINEST, COARSEST))
-    grid = generate(seed=cumulus.SEED, voxel=voxel)
+    grid = generate(seed=of.seed, voxel=voxel)
     made = time.perf_counter() - start
-    sigma_t = THICKNESS / grid_through_the_middle(grid)
+    sigma_t = of.thickness / grid_through_the_middle(grid)
     picture = draw_march(
         grid,
         camera,
-        (LATE_MORNING,) if view.suns is None else view.suns,
+        (of.sun,) if view.suns is None else view.suns,
         Sky(),
-        medium=view.medium or Medium(sigma_t, g=G, phase="hg"),
+        medium=view.medium or Medium(sigma_t, g=of.g, phase="hg"),
         ambient=AMBIENT,
         scattering=view.scattering or "multiple",
         tolerance=view.tolerance,
@@ -66,12 +104,16 @@ def draw(model: Model, view: View) -> Picture:
     )
 
 
-enter(
-    Scene(
-        "multiple",
-        "a cumulus with every order of scattering",
-        no_model,
-        draw,
-        Motion(cumulus.eye, (LATE_MORNING,)),
-    )
+def own_eye(model: Model, view: View, *, of: Multiple) -> Camera:
+    """Look up at the cloud from below."""
+    return Camera(of.eye, of.target, width=view.width, height=view.height)
+
+
+def turning(of: Multiple) -> Motion:
+    """Turn eye and sun."""
+    return Motion(partial(own_eye, of=of), (of.sun,))
+
+
+enter_kind(
+    Kind("multiple", "a cumulus with every order of scattering", OWN, draw, turning)
 )

@@ -17,59 +17,59 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
-from collections.abc import Callable
 from functools import partial
 
 from refcloud.camera import AnyCamera
-from refcloud.conventions import Skipped
+from refcloud.declared import Kind, enter_kind, told
 from refcloud.image import Picture
 from refcloud.noise import fbm
 from refcloud.noise.scattered import Numbers
-from refcloud.raster import Texture, sample
-from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.scene import Model, Motion, View
 from refcloud.scenes.demand_plane import pair
 from refcloud.scenes.shader_eyes import (
     NEVER,
     blown,
-    in_single,
-    kept_places,
-    no_model,
-    observed,
     outlook,
-    painted,
     precision,
-    refuse_unused,
-    texels,
+)
+from refcloud.scenes.shader_kinds import (
+    DomeSky,
+    PlaneSky,
+    SolidSky,
+    SphereSky,
+    TwoCovers,
+)
+from refcloud.scenes.shader_textures import (
+    CLOUDS,
+    DOME,
+    VOLUME,
+    WRAPPED,
+    along,
+    background,
+    evaluated,
+    pole_eye,
+    textured_sky,
+    upward_eye,
+    volume_sky,
 )
 from refcloud.sky import (
     SAME_SIGN,
-    Cover,
-    Dome,
     Fog,
     Places,
     Plane,
     Sphere,
-    cloud_cover,
-    fractal_texture,
-    fractal_volume,
-    looked_up,
-    shaded,
 )
 from refcloud.sky.places import Way
-from refcloud.sky.surfaces import Surface
 
-CLOUDS = Cover(0.01, 6.0, 1.05, -1.1, 0.35)
-FIRST_TRY = dataclasses.replace(SAME_SIGN, opacity_slope=6.0, light=0.35)
-OVERHEAD = Plane(height=1.0, tile=0.75, reach=40.0)
-AROUND, DOME = Sphere(radius=1.0), Dome(radius=10.0, tiles=2.0)
-AIR = Fog(0.18, None)  # what is far melts into its sky
-FLAT_SEED, SOLID_SEED, TEXTURE_SEED = 3, 1, 4
-SOLID_CELLS, SOLID_PERIOD = 3.0, 8  # cells per radius; they repeat after so many
-TEXTURE, TEXTURE_CELLS, OCTAVES = 512, 6, 6
-VOLUME, VOLUME_CELLS = 96, 6
-SOLID_REPEATS = SOLID_PERIOD / SOLID_CELLS
-DOME_REPEATS = math.pi * DOME.radius / DOME.tiles  # along the half-sphere
+PLANE = PlaneSky(
+    surface=Plane(height=1.0, tile=0.75, reach=40.0),
+    cover=CLOUDS,
+    fog=Fog(0.18, None),  # what is far melts into its sky
+    seed=3,
+    octaves=6,
+)
+COVERS = TwoCovers(dataclasses.replace(SAME_SIGN, opacity_slope=6.0, light=0.35), PLANE)
+SOLID = SolidSky(Sphere(radius=1.0), CLOUDS, seed=1, octaves=6, cells=3.0, period=8)
 
 
 def plane_eye(model: Model, view: View) -> AnyCamera:
@@ -77,208 +77,154 @@ def plane_eye(model: Model, view: View) -> AnyCamera:
     return outlook(view, (0.0, 0.46, -1.0), 1.05)
 
 
-def upward_eye(model: Model, view: View) -> AnyCamera:
-    """Look up into a sphere or a half-sphere."""
-    return outlook(view, (0.0, 0.75, -1.0), 1.25)
-
-
-def pole_eye(model: Model, view: View) -> AnyCamera:
-    """Look at the pole above."""
-    return outlook(view, (0.0, 1.0, -0.55), 1.4)
-
-
 def plane_sky(
-    model: Model, view: View, *, cover: Cover = CLOUDS, way: Way = "rays"
+    model: Model, view: View, *, of: PlaneSky = PLANE, way: Way = "rays"
 ) -> Picture:
     """Draw the plane: simplex noise of x, z and time, evaluated for every pixel."""
 
     def noise(at: Places) -> Numbers:
-        moved = at.coordinates - blown(view)[[0, 2]] / OVERHEAD.tile
+        moved = at.coordinates - blown(view)[[0, 2]] / of.surface.tile
         return fbm(
             moved,
             kind="simplex",
             time=view.time,
-            seed=FLAT_SEED,
-            octaves=OCTAVES,
+            seed=of.seed,
+            octaves=of.octaves,
             dtype=precision(view),
         )
 
-    return evaluated(view, plane_eye(model, view), OVERHEAD, noise, cover, way, AIR)
+    eye = plane_eye(model, view)
+    return evaluated(view, eye, of.surface, noise, of.cover, way, of.fog)
 
 
-def solid_sky(model: Model, view: View, *, way: Way = "rays") -> Picture:
+def solid_sky(
+    model: Model, view: View, *, of: SolidSky = SOLID, way: Way = "rays"
+) -> Picture:
     """Draw the sphere: classic noise of three coordinates and time at every pixel."""
 
     def noise(at: Places) -> Numbers:
         return fbm(
-            SOLID_CELLS * (at.points - blown(view)),
+            of.cells * (at.points - blown(view)),
             kind="gradient",
             time=view.time,
-            seed=SOLID_SEED,
-            octaves=OCTAVES,
-            period=SOLID_PERIOD,
+            seed=of.seed,
+            octaves=of.octaves,
+            period=of.period,
             dtype=precision(view),
         )
 
-    return evaluated(view, upward_eye(model, view), AROUND, noise, CLOUDS, way)
+    eye = upward_eye(model, view)
+    return evaluated(view, eye, of.surface, noise, of.cover, way)
 
 
-def volume_sky(model: Model, view: View, *, way: Way = "rays") -> Picture:
-    """Draw the sphere with a texture in space, made anew for every time."""
-    rows: list[Skipped] = []
-
-    def noise(at: Places) -> Numbers:
-        volume, left_out = fractal_volume(
-            min(VOLUME, texels(view, 2 * VOLUME) // 2),
-            cells=VOLUME_CELLS,
-            time=view.time,
-            seed=SOLID_SEED,
-            octaves=OCTAVES,
-            dtype=precision(view),
-        )
-        rows.extend(left_out)
-        observed(view, "volume", volume)
-        solid = Texture(volume[..., None], wrap="CLAMP_TO_EDGE")
-        # The sphere fills the texture from side to side.
-        return sample(solid, 0.5 + 0.5 * at.points)[:, 0]
-
-    picture = evaluated(view, upward_eye(model, view), AROUND, noise, CLOUDS, way)
-    return dataclasses.replace(picture, skipped=(*rows, *picture.skipped))
-
-
-def textured_sky(
-    model: Model, view: View, *, surface: Dome | Sphere = DOME, way: Way = "rays"
-) -> Picture:
-    """Draw a texture in the plane on the half-sphere, or wrapped around the sphere."""
-    eye = upward_eye if isinstance(surface, Dome) else pole_eye
-    rows: list[Skipped] = []
-
-    def noise(at: Places) -> Numbers:
-        texture, left_out = fractal_texture(
-            texels(view, TEXTURE),
-            cells=TEXTURE_CELLS,
-            time=view.time,
-            seed=TEXTURE_SEED,
-            octaves=OCTAVES,
-            dtype=precision(view),
-        )
-        rows.extend(left_out)
-        observed(view, "texture", texture)
-        scroll = blown(view)[[0, 2]] / DOME_REPEATS
-        return looked_up(texture, at.coordinates - scroll)
-
-    picture = evaluated(view, eye(model, view), surface, noise, CLOUDS, way)
-    return dataclasses.replace(picture, skipped=(*rows, *picture.skipped))
-
-
-def evaluated(
-    view: View,
-    camera: AnyCamera,
-    surface: Surface,
-    noise: Callable[[Places], Numbers],
-    cover: Cover,
-    way: Way,
-    fog: Fog | None = None,
-) -> Picture:
-    """Draw clouds on a surface before the clear sky: noise of the places it is seen at.
-
-    Parameters
-    ----------
-    view, camera
-        How, and from where.
-    surface, way
-        What the clouds are drawn on, and how its pixels are found.
-    noise
-        Gives noise, shape (N,), for the places that N pixels show.
-    cover, fog
-        How noise becomes cloud, and what is before it.
-
-    Returns
-    -------
-    The picture.
-    """
-    refuse_unused(view)
-    start = time.perf_counter()
-    found = kept_places(view, camera, surface, way)
-    behind = painted(camera, view)
-    light = shaded(behind, found, lambda at: cloud_cover(noise(at), cover), fog=fog)
-    seconds = {"sky": time.perf_counter() - start}
-    rows = (*found.skipped, *in_single(view, cover, len(found.distance)))
-    return Picture(light, None, rows, seconds)
-
-
-def covers(model: Model, view: View) -> Picture:
+def covers(model: Model, view: View, *, of: TwoCovers = COVERS) -> Picture:
     """Draw the plane with slopes of one sign, and with slopes of opposite signs."""
     return pair(
         dataclasses.replace(view, kept=None),
-        partial(plane_sky, model, cover=FIRST_TRY),
-        partial(plane_sky, model),
+        partial(plane_sky, model, of=dataclasses.replace(of.sky, cover=of.first)),
+        partial(plane_sky, model, of=of.sky),
     )
 
 
-def background(model: Model, view: View) -> Picture:
-    """Give the picture of one moment, whatever the time: what most games show."""
-    moment = dataclasses.replace(view, time=0.0, offset=None)
-    name = "background", view.width, view.height
-    stored = None if view.kept is None else view.kept.get(name)
-    if stored is None or view.camera is not None:
-        stored = textured_sky(model, moment)
-        if view.kept is not None and view.camera is None:
-            view.kept[name] = stored
-    note = "background: one picture, shown as it is at every time"
-    return dataclasses.replace(stored, notes=(note,))
-
-
-ONCE = float(TEXTURE_CELLS)
-ROLLING = (DOME_REPEATS, math.inf, DOME_REPEATS)
 IN_PLACE = "in place"
-for name, title, draw, motion in (
+
+
+def solid_motion(of: SolidSky) -> Motion:
+    """Turn the eye in a sphere whose noise repeats."""
+    again = of.period / of.cells
+    period = float(of.period)
+    return Motion(upward_eye, turns=IN_PLACE, period=period, repeats=(again,) * 3)
+
+
+def plane_motion(of: PlaneSky) -> Motion:
+    """Turn the eye under a plane whose noise never repeats."""
+    return Motion(plane_eye, turns=IN_PLACE, period=math.inf, repeats=NEVER)
+
+
+def covers_motion(of: TwoCovers) -> Motion:
+    """Blow wind; two pictures have no eye of their own."""
+    return Motion(period=math.inf, repeats=NEVER)
+
+
+def dome_motion(of: DomeSky) -> Motion:
+    """Turn the eye under a half-sphere whose texture rolls on."""
+    rolling = (along(of), math.inf, along(of))
+    period = float(of.cells)
+    return Motion(upward_eye, turns=IN_PLACE, period=period, repeats=rolling)
+
+
+def wrapped_motion(of: SphereSky) -> Motion:
+    """Turn the eye that looks at the pole."""
+    return Motion(pole_eye, turns=IN_PLACE, period=float(of.cells))
+
+
+def volume_motion(of: SphereSky) -> Motion:
+    """Turn the eye in a sphere whose noise in space never repeats."""
+    return Motion(upward_eye, turns=IN_PLACE, period=math.inf)
+
+
+def still(of: DomeSky) -> Motion:
+    """Show the same at every time."""
+    return Motion(period=1.0)
+
+
+for name, title, own, draw, motion in (
     (
         "b",
         "appendix B: a sphere with classic noise in four dimensions",
+        SOLID,
         solid_sky,
-        Motion(
-            upward_eye,
-            turns=IN_PLACE,
-            period=float(SOLID_PERIOD),
-            repeats=(SOLID_REPEATS, SOLID_REPEATS, SOLID_REPEATS),
-        ),
+        solid_motion,
     ),
     (
         "c",
         "appendix C: a plane with simplex noise in three dimensions",
+        PLANE,
         plane_sky,
-        Motion(plane_eye, turns=IN_PLACE, period=math.inf, repeats=NEVER),
+        plane_motion,
     ),
     (
         "cover",
-        "slopes of one sign, and of opposite signs",
+        "section 5.1: slopes of one sign, and of opposite signs",
+        COVERS,
         covers,
-        Motion(period=math.inf, repeats=NEVER),
+        covers_motion,
     ),
     (
         "dome",
-        "a half-sphere with an animated texture",
+        "section 5.2: a half-sphere with an animated texture",
+        DOME,
         textured_sky,
-        Motion(upward_eye, turns=IN_PLACE, period=ONCE, repeats=ROLLING),
+        dome_motion,
     ),
     (
         "poles",
-        "a sphere with a texture wrapped around it, pinched at its pole",
-        partial(textured_sky, surface=Sphere()),
-        Motion(pole_eye, turns=IN_PLACE, period=ONCE),
+        "section 5.2: a sphere with a texture around it, pinched at its pole",
+        WRAPPED,
+        textured_sky,
+        wrapped_motion,
     ),
     (
         "volume",
-        "a sphere with a texture in space",
+        "section 5.2, of appendix B: a sphere with a texture in space",
+        VOLUME,
         volume_sky,
-        Motion(upward_eye, turns=IN_PLACE, period=math.inf),
+        volume_motion,
     ),
     (
         "background",
-        "the baseline, a picture that never moves",
+        "section 1: the baseline, a picture that never moves",
+        DOME,
         background,
-        Motion(period=1.0),
+        still,
     ),
 ):
-    enter(Scene(f"shader-{name}", f"document S: {title}", no_model, draw, motion))
+    enter_kind(
+        Kind(
+            f"shader-{name}",
+            f"document S: {title}",
+            own,
+            partial(told, draw),
+            motion,
+        )
+    )

@@ -20,10 +20,11 @@ import numpy as np
 
 from refcloud.camera import AnyCamera, rays
 from refcloud.conventions import WHOLE_SPHERE, Array
+from refcloud.declared import Kind, enter_kind, told
 from refcloud.image import Picture
 from refcloud.noise import fbm
 from refcloud.optics import Sun
-from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.scene import Model, Motion, View
 from refcloud.scenes.demand_plane import pair
 from refcloud.scenes.shader_eyes import (
     FRONT,
@@ -31,7 +32,6 @@ from refcloud.scenes.shader_eyes import (
     SUN,
     blown,
     kept_places,
-    no_model,
     observed,
     outlook,
     painted,
@@ -40,6 +40,7 @@ from refcloud.scenes.shader_eyes import (
     texels,
     timed,
 )
+from refcloud.scenes.shader_kinds import LitLayer, TwoFogs
 from refcloud.sky import (
     Cover,
     FlatBase,
@@ -56,24 +57,36 @@ from refcloud.sky import (
     shaded,
 )
 
-LAYER = FlatBase(threshold=0.0, slope=2.6, thickness=0.5, sigma_t=9.0, steps=12)
-BASE = Plane(height=1.0, tile=10.0, reach=40.0)
-TEXTURE, CELLS, OCTAVES, SEED = 1024, 16, 7, 7
-SKY_LIGHT = np.array([0.20, 0.29, 0.44])  # reaches the base from all sides
-MELT = Fog(0.18, None)
+SKY_LIGHT = np.array([0.20, 0.29, 0.44])
+LIT = LitLayer(
+    layer=FlatBase(threshold=0.0, slope=2.6, thickness=0.5, sigma_t=9.0, steps=12),
+    base=Plane(height=1.0, tile=10.0, reach=40.0),
+    seed=7,
+    octaves=7,
+    cells=16,
+    size=1024,
+    sun=SUN,
+    sky_light=SKY_LIGHT,  # reaches the base from all sides
+    fog=Fog(0.18, None),
+)
 
 # The fog's scene: a ground below, balls at growing distances, a sky above.
-GROUND, SKY_PLANE = Plane(-0.6, 1.0, 60.0), Plane(1.2, 0.9, 60.0)
 BALLS = tuple(
     Sphere(np.array([x, -0.25, -z]), 0.35)
     for x, z in ((-0.55, 1.9), (0.7, 3.2), (-1.3, 5.0), (1.2, 7.5), (-0.9, 11.0))
 )
 GREEN, BROWN = np.array([0.13, 0.21, 0.07]), np.array([0.30, 0.22, 0.12])
 RED = np.array([0.62, 0.16, 0.08])
-CLOUDS = Cover(0.01, 6.0, 1.05, -1.1, 0.35)
 GREY = np.array([0.58, 0.70, 0.83])
-# As printed the density is a length: up to it all drowns, beyond it all is clear.
-PRINTED, MENDED = Fog(4.0, GREY, "printed"), Fog(0.16, GREY)
+FOGS = TwoFogs(
+    # As printed the density is a length: up to it all drowns, beyond it all is clear.
+    printed=Fog(4.0, GREY, "printed"),
+    mended=Fog(0.16, GREY),
+    ground=Plane(-0.6, 1.0, 60.0),
+    sky=Plane(1.2, 0.9, 60.0),
+    cover=Cover(0.01, 6.0, 1.05, -1.1, 0.35),
+    sun=FRONT,
+)
 
 
 def lit_eye(model: Model, view: View) -> AnyCamera:
@@ -81,60 +94,65 @@ def lit_eye(model: Model, view: View) -> AnyCamera:
     return outlook(view, (0.0, 0.42, -1.0), 1.05)
 
 
-def lit_layer(model: Model, view: View, *, direct: bool = False) -> Picture:
+def lit_layer(
+    model: Model, view: View, *, of: LitLayer = LIT, direct: bool = False
+) -> Picture:
     """Draw a layer with a flat base, lit through its thickness."""
     refuse_unused(view)
     camera = lit_eye(model, view)
-    suns = (SUN,) if view.suns is None else view.suns
+    layer, base = of.layer, of.base
+    suns = (of.sun,) if view.suns is None else view.suns
 
     def draw():
-        found = kept_places(view, camera, BASE)
-        pattern, rows = noise_of(view, direct)
-        moved = found.coordinates * BASE.tile - blown(view)[[0, 2]]
-        risen = base_density(pattern(moved), np.zeros(len(moved)), LAYER)
+        found = kept_places(view, camera, base)
+        pattern, rows = noise_of(view, direct, of)
+        moved = found.coordinates * base.tile - blown(view)[[0, 2]]
+        risen = base_density(pattern(moved), np.zeros(len(moved)), layer)
         # Only what is cloud is marched.
         cloud = risen > 0.0
-        light = np.tile(SKY_LIGHT, (len(moved), 1))
+        light = np.tile(of.sky_light, (len(moved), 1))
         for sun in suns:
-            T = light_from_above(moved[cloud], pattern, LAYER, sun=sun.direction)
+            T = light_from_above(moved[cloud], pattern, layer, sun=sun.direction)
             observed(view, "transmittance", T)
             light[cloud] += T[:, None] * sun.irradiance / WHOLE_SPHERE
         # Along the view, density falls from `risen` to 0 on the way up to the top.
         _, directions = rays(camera)
         rise = directions[found.seen][:, 1]
-        depth = LAYER.sigma_t * LAYER.thickness * risen**2 / 2.0 / rise
+        depth = layer.sigma_t * layer.thickness * risen**2 / 2.0 / rise
         behind = painted(camera, view)
-        over = shaded(behind, found, lambda at: (light, -np.expm1(-depth)), fog=MELT)
+        over = shaded(behind, found, lambda at: (light, -np.expm1(-depth)), fog=of.fog)
         note = f"marched to the sun: {np.count_nonzero(cloud)} pixels"
-        return over, (*found.skipped, *rows), (f"{note}, {LAYER.steps} samples each",)
+        return over, (*found.skipped, *rows), (f"{note}, {layer.steps} samples each",)
 
     return timed(draw)
 
 
-def noise_of(view: View, direct: bool) -> tuple[Callable[[Array], Any], tuple]:
+def noise_of(
+    view: View, direct: bool, of: LitLayer = LIT
+) -> tuple[Callable[[Array], Any], tuple]:
     """Give noise over the base: a texture of it, or its sums of octaves themselves."""
-    how = {"time": view.time, "seed": SEED, "octaves": OCTAVES}
-    cells = CELLS / BASE.tile
+    how = {"time": view.time, "seed": of.seed, "octaves": of.octaves}
+    cells = of.cells / of.base.tile
     if direct:
         return lambda at: fbm(
-            cells * at, period=CELLS, dtype=precision(view), **how
+            cells * at, period=of.cells, dtype=precision(view), **how
         ), ()
     texture, rows = fractal_texture(
-        texels(view, TEXTURE), cells=CELLS, dtype=precision(view), **how
+        texels(view, of.size), cells=of.cells, dtype=precision(view), **how
     )
-    return lambda at: looked_up(texture, at / BASE.tile), rows
+    return lambda at: looked_up(texture, at / of.base.tile), rows
 
 
-def foggy(view: View, fog: Fog) -> Picture:
+def foggy(view: View, fog: Fog, of: TwoFogs = FOGS) -> Picture:
     """Draw ground, balls and sky, each in the same fog."""
     refuse_unused(view)
     camera = outlook(view, (0.0, 0.0, -1.0), 0.95)
-    suns = (FRONT,) if view.suns is None else view.suns
+    suns = (of.sun,) if view.suns is None else view.suns
 
     def clouds(at: Places) -> tuple[Array, Array]:
-        drifted = at.coordinates - blown(view)[[0, 2]] / SKY_PLANE.tile
+        drifted = at.coordinates - blown(view)[[0, 2]] / of.sky.tile
         noise = fbm(drifted, kind="simplex", time=view.time, seed=3, octaves=5)
-        return cloud_cover(noise, CLOUDS)
+        return cloud_cover(noise, of.cover)
 
     def ground(at: Places) -> tuple[Array, Array]:
         mixed = np.clip(0.5 + 1.5 * fbm(at.coordinates, seed=5, octaves=4), 0.0, 1.0)
@@ -146,8 +164,8 @@ def foggy(view: View, fog: Fog) -> Picture:
         return RED * lambert(normals, suns), np.ones(len(normals))
 
     def draw():
-        over = shaded(painted(camera, view), places(camera, SKY_PLANE), clouds, fog=fog)
-        over = shaded(over, places(camera, GROUND), ground, fog=fog)
+        over = shaded(painted(camera, view), places(camera, of.sky), clouds, fog=fog)
+        over = shaded(over, places(camera, of.ground), ground, fog=fog)
         for sphere in sorted(BALLS, key=lambda b: b.center[2]):  # the farthest first
             found = places(camera, sphere)
             over = shaded(over, found, partial(ball, center=sphere.center), fog=fog)
@@ -177,33 +195,40 @@ def lambert(normals: Array, suns: tuple[Sun, ...]) -> Array:
     return light
 
 
-def both_fogs(model: Model, view: View) -> Picture:
+def both_fogs(model: Model, view: View, *, of: TwoFogs = FOGS) -> Picture:
     """Draw the fog as printed, and mended."""
     apart = dataclasses.replace(view, kept=None)
-    return pair(apart, partial(foggy, fog=PRINTED), partial(foggy, fog=MENDED))
+    left, right = (partial(foggy, fog=fog, of=of) for fog in (of.printed, of.mended))
+    return pair(apart, left, right)
 
 
-enter(
-    Scene(
-        "shader-lit",
-        "document S: figure 2, a layer lit through its thickness",
-        no_model,
+def lit_motion(of: LitLayer) -> Motion:
+    """Turn the eye in place; the layer's noise repeats."""
+    repeats = (of.base.tile, math.inf, of.base.tile)
+    how = {"turns": "in place", "period": float(of.cells), "repeats": repeats}
+    return Motion(lit_eye, (of.sun,), **how)
+
+
+def fog_motion(of: TwoFogs) -> Motion:
+    """Move the sun, and the clouds by wind and time."""
+    return Motion(suns=(of.sun,), period=math.inf, repeats=NEVER)
+
+
+for name, title, own, draw, motion in (
+    (
+        "lit",
+        "section 5.1, of appendix B: a layer lit through its thickness",
+        LIT,
         lit_layer,
-        Motion(
-            lit_eye,
-            (SUN,),
-            turns="in place",
-            period=float(CELLS),
-            repeats=(BASE.tile, math.inf, BASE.tile),
-        ),
-    )
-)
-enter(
-    Scene(
-        "shader-fog",
-        "document S: fog on every object, as printed and mended",
-        no_model,
+        lit_motion,
+    ),
+    (
+        "fog",
+        "section 5.1: fog on every object, as printed and mended",
+        FOGS,
         both_fogs,
-        Motion(suns=(FRONT,), period=math.inf, repeats=NEVER),
-    )
-)
+        fog_motion,
+    ),
+):
+    title = f"document S: {title}"
+    enter_kind(Kind(f"shader-{name}", title, own, partial(told, draw), motion))

@@ -11,11 +11,13 @@ hash itself, neither coherent nor continuous (N04).
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
 from refcloud.camera import AnyCamera, Camera
 from refcloud.conventions import WHOLE_SPHERE, Array
+from refcloud.declared import Kind, enter_kind, told
 from refcloud.image import Picture, srgb_decode
 from refcloud.noise import fbm, lattice_random, wrapped_bilinear
 from refcloud.noise.kinds import KindName
@@ -27,18 +29,18 @@ from refcloud.raster import (
     framebuffer,
     sphere_mesh,
 )
-from refcloud.scene import Model, Motion, Scene, View, enter
-from refcloud.scenes.demand_plane import flat_alone, greys
+from refcloud.scene import Model, Motion, View
+from refcloud.scenes.demand_plane import flat_alone, greys, still
 from refcloud.scenes.shader_eyes import (
     FRONT,
     SUN,
-    no_model,
     observed,
     painted,
     precision,
     refuse_unused,
     timed,
 )
+from refcloud.scenes.shader_kinds import Bubble, LitPuff, NoiseBalls, Raw
 from refcloud.scenes.shader_light import lambert
 from refcloud.sky import (
     Cover,
@@ -56,27 +58,39 @@ from refcloud.sky import (
 
 # Appendix A: four balls, seen a little from above so that their poles show.
 BALL = Sphere(np.zeros(3), 1.0)
-SOLID_CELLS, SOLID_SEED = 3.0, 2
-PICTURE = 256  # texels of the picture around a ball, half as many from pole to pole
+# The picture around a ball has half as many texels from pole to pole.
+BALLS = NoiseBalls(seed=2, cells=3.0, size=256, sun=SUN)
 
-PUFF = Puff(radius=0.95, cell=0.55, distortion=1.0, softness=0.8, octaves=6, seed=2)
-# Its light: steps toward the sun, their length, extinction on that way and to the eye.
-PUFF_STEPS, PUFF_STEP, PUFF_SIGMA, PUFF_OPACITY = 10, 0.1, 3.2, 2.6
-SMOKE, SHADE = np.array([1.0, 0.97, 0.92]), np.array([0.30, 0.36, 0.46])
+SMOKE = LitPuff(
+    puff=Puff(radius=0.95, cell=0.55, distortion=1.0, softness=0.8, octaves=6, seed=2),
+    steps=10,
+    step=0.1,
+    sigma_t=3.2,
+    opacity=2.6,
+    smoke=np.array([1.0, 0.97, 0.92]),
+    shade=np.array([0.30, 0.36, 0.46]),
+    sun=SUN,
+)
 
-BUBBLE = Displacement(amount=0.42, frequency=1.25, octaves=1, seed=3)
 COLUMNS, ROWS = 128, 64  # of the sphere's mesh
-BUBBLE_CELLS, BUBBLE_SEED = 2.2, 6
-BLUE = np.array([0.10, 0.22, 0.50])
-BUBBLE_CLOUDS = Cover(-0.02, 5.0, 1.0, -0.5, 0.4)
-PERIOD = 8  # units of time of the bubble's texture
+BUBBLE = Bubble(
+    shape=Displacement(amount=0.42, frequency=1.25, octaves=1, seed=3),
+    cover=Cover(-0.02, 5.0, 1.0, -0.5, 0.4),
+    color=np.array([0.10, 0.22, 0.50]),
+    seed=6,
+    octaves=5,
+    cells=2.2,
+    period=8,
+    sun=FRONT,
+)
+NUMBERS = Raw(seed=1, across=64)
 
 
-def solid_and_mapped(model: Model, view: View) -> Picture:
+def solid_and_mapped(model: Model, view: View, *, of: NoiseBalls = BALLS) -> Picture:
     """Draw four balls: classic above, simplex below, solid left, wrapped right."""
     refuse_unused(view, "camera")
     half = max(view.width // 2, 1), max(view.height // 2, 1)
-    suns = (SUN,) if view.suns is None else view.suns
+    suns = (of.sun,) if view.suns is None else view.suns
     eye = Camera(
         np.array([0.0, 2.6, -2.6]),
         np.zeros(3),
@@ -90,7 +104,7 @@ def solid_and_mapped(model: Model, view: View) -> Picture:
         light = np.full((view.height, view.width, 3), 0.06)
         for row, kind in enumerate(("gradient", "simplex")):
             for column, solid in enumerate((True, False)):
-                panel = ball_of_noise(found, kind, solid, view, suns)
+                panel = ball_of_noise(found, kind, solid, view, suns, of)
                 rows = slice(row * half[1], (row + 1) * half[1])
                 light[rows, column * half[0] : (column + 1) * half[0]] = panel
         return light, (), ()
@@ -99,17 +113,17 @@ def solid_and_mapped(model: Model, view: View) -> Picture:
 
 
 def ball_of_noise(
-    found: Places, kind: KindName, solid: bool, view: View, suns
+    found: Places, kind: KindName, solid: bool, view: View, suns, of: NoiseBalls
 ) -> Array:
     """Draw a ball of one kind of noise, solid or with a picture wrapped around it."""
-    how = {"kind": kind, "seed": SOLID_SEED, "octaves": 1, "dtype": precision(view)}
+    how = {"kind": kind, "seed": of.seed, "octaves": 1, "dtype": precision(view)}
 
     def shade(at: Places) -> tuple[Array, Array]:
         if solid:
-            noise = fbm(SOLID_CELLS * at.points, time=view.time, **how)
+            noise = fbm(of.cells * at.points, time=view.time, **how)
         else:
             # As many cells along the equator and from pole to pole as the solid has.
-            line = (np.arange(PICTURE) + 0.5) / PICTURE * math.pi * SOLID_CELLS
+            line = (np.arange(of.size) + 0.5) / of.size * math.pi * of.cells
             flat = np.stack(np.meshgrid(2.0 * line, line[::2]), axis=-1)
             picture = fbm(flat, time=view.time, **how)
             noise = looked_up(picture, at.coordinates)
@@ -120,10 +134,10 @@ def ball_of_noise(
     return shaded(np.full((height, width, 3), 0.06), found, shade)
 
 
-def puff(model: Model, view: View) -> Picture:
+def puff(model: Model, view: View, *, of: LitPuff = SMOKE) -> Picture:
     """Draw the puff over a sky; its light is marched toward the sun in its plane."""
     refuse_unused(view, "camera")
-    suns = (SUN,) if view.suns is None else view.suns
+    suns = (of.sun,) if view.suns is None else view.suns
 
     def draw():
         # 1. Density at every pixel's centre.
@@ -133,7 +147,7 @@ def puff(model: Model, view: View) -> Picture:
         y: Array = pixel * (0.5 * height - np.arange(height, dtype=np.float64) - 0.5)
         at = np.stack(np.meshgrid(x, y), axis=-1)
         how = {"time": view.time, "dtype": precision(view)}
-        density = puff_density(at, PUFF, **how)
+        density = puff_density(at, of.puff, **how)
 
         observed(view, "density", density)
 
@@ -141,21 +155,21 @@ def puff(model: Model, view: View) -> Picture:
         #    drawn already (R09); around the picture there is none.
         rows, columns = np.nonzero(density > 0.0)
         framed = np.pad(density, 1)
-        light = np.repeat(SHADE[None], len(rows), axis=0)
+        light = np.repeat(of.shade[None], len(rows), axis=0)
         for sun in suns:
             depth = np.zeros(len(rows))
-            for i in range(PUFF_STEPS):
-                far = (i + 0.5) * PUFF_STEP / pixel
+            for i in range(of.steps):
+                far = (i + 0.5) * of.step / pixel
                 u = np.clip(columns + 1 + far * sun.direction[0], 0, width + 1)
                 v = np.clip(rows + 1 - far * sun.direction[1], 0, height + 1)
-                depth += PUFF_STEP * wrapped_bilinear(framed, u, v)
-            T = np.exp(-PUFF_SIGMA * depth)[:, None]
-            light += SMOKE * T * sun.irradiance / WHOLE_SPHERE * 0.8
+                depth += of.step * wrapped_bilinear(framed, u, v)
+            T = np.exp(-of.sigma_t * depth)[:, None]
+            light += of.smoke * T * sun.irradiance / WHOLE_SPHERE * 0.8
 
         # 3. Over the sky.
         ahead = np.array([0.0, 0.6, -1.0])
         over = painted(Camera(np.zeros(3), ahead, width=width, height=height), view)
-        share = -np.expm1(-PUFF_OPACITY * density[rows, columns])[:, None]
+        share = -np.expm1(-of.opacity * density[rows, columns])[:, None]
         over[rows, columns] = share * light + (1.0 - share) * over[rows, columns]
         return over, (), ()
 
@@ -175,32 +189,32 @@ def bubble_eye(model: Model, view: View) -> AnyCamera:
     )
 
 
-def bubble_mesh(time: float) -> Mesh:
+def bubble_mesh(time: float, of: Bubble = BUBBLE) -> Mesh:
     """Make the moved sphere: normals, and the place before it was moved, beside it."""
     ball = sphere_mesh(COLUMNS, ROWS)
-    points, normals = displaced_sphere(ball.points, BUBBLE, time=time)
+    points, normals = displaced_sphere(ball.points, of.shape, time=time)
     return Mesh(points, ball.faces, np.concatenate([normals, ball.points], axis=1))
 
 
-def bubble(model: Model, view: View) -> Picture:
+def bubble(model: Model, view: View, *, of: Bubble = BUBBLE) -> Picture:
     """Draw the distorted sphere as textured triangles, lit by its own normals."""
     refuse_unused(view)
     camera = bubble_eye(model, view)
-    suns = (FRONT,) if view.suns is None else view.suns
+    suns = (of.sun,) if view.suns is None else view.suns
 
     def shade(fragments: Fragments) -> Array:
         normals, at = fragments.values[:3].T, fragments.values[3:].T
         normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
         noise = fbm(
-            BUBBLE_CELLS * at,
+            of.cells * at,
             time=view.time,
-            seed=BUBBLE_SEED,
-            octaves=5,
-            period=PERIOD,
+            seed=of.seed,
+            octaves=of.octaves,
+            period=of.period,
             dtype=precision(view),
         )
-        white, share = cloud_cover(noise, BUBBLE_CLOUDS)
-        color = share[:, None] * white[:, None] + (1.0 - share[:, None]) * BLUE
+        white, share = cloud_cover(noise, of.cover)
+        color = share[:, None] * white[:, None] + (1.0 - share[:, None]) * of.color
         rgba = np.ones((len(color), 4))
         rgba[:, :3] = color * lambert(normals, suns)
         return rgba
@@ -208,7 +222,7 @@ def bubble(model: Model, view: View) -> Picture:
     def draw():
         buffer = framebuffer(camera.width, camera.height, depth=1.0)
         buffer.pixels[..., :3] = painted(camera, view)
-        mesh = bubble_mesh(view.time)
+        mesh = bubble_mesh(view.time, of)
         far = None if isinstance(camera, Camera) else 1e6
         draw_triangles(
             buffer,
@@ -225,29 +239,41 @@ def bubble(model: Model, view: View) -> Picture:
     return timed(draw)
 
 
-def raw(model: Model, view: View) -> Picture:
+def raw(model: Model, view: View, *, of: Raw = NUMBERS) -> Picture:
     """Draw the hash of every pixel's place, in squares of some pixels."""
     flat_alone(view)
-    edge = max(view.width, view.height) / 64.0
+    edge = max(view.width, view.height) / of.across
     column = (np.arange(view.width) / edge).astype(np.int64)
     row = (np.arange(view.height) / edge).astype(np.int64)[:, None]
-    return greys(0.5 + 0.5 * lattice_random(column, row, 0, seed=1))
+    return greys(0.5 + 0.5 * lattice_random(column, row, 0, seed=of.seed))
 
 
-for name, title, draw_one, motion in (
+def balls_motion(of: NoiseBalls) -> Motion:
+    """Move the sun; noise never repeats."""
+    return Motion(suns=(of.sun,), period=math.inf)
+
+
+def puff_motion(of: LitPuff) -> Motion:
+    """Move the sun; the puff's noise repeats."""
+    return Motion(suns=(of.sun,), period=float(of.puff.period))
+
+
+def bubble_motion(of: Bubble) -> Motion:
+    """Turn the eye, move the sun."""
+    return Motion(bubble_eye, (of.sun,), period=math.inf)
+
+
+for name, title, own, draw_one, motion in (
     (
         "a",
         "appendix A: noise solid and mapped",
+        BALLS,
         solid_and_mapped,
-        Motion(suns=(SUN,), period=math.inf),
+        balls_motion,
     ),
-    ("d", "appendix D: a puff", puff, Motion(suns=(SUN,), period=float(PUFF.period))),
-    (
-        "e",
-        "appendix E: a distorted sphere",
-        bubble,
-        Motion(bubble_eye, (FRONT,), period=math.inf),
-    ),
-    ("raw", "raw pseudo-random numbers", raw, Motion()),
+    ("d", "appendix D: a puff", SMOKE, puff, puff_motion),
+    ("e", "appendix E: a distorted sphere", BUBBLE, bubble, bubble_motion),
+    ("raw", "section 3.1: raw pseudo-random numbers", NUMBERS, raw, still),
 ):
-    enter(Scene(f"shader-{name}", f"document S: {title}", no_model, draw_one, motion))
+    title = f"document S: {title}"
+    enter_kind(Kind(f"shader-{name}", title, own, partial(told, draw_one), motion))

@@ -34,14 +34,18 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 
 from refcloud.camera import OrthographicCamera
-from refcloud.conventions import Array
+from refcloud.checking import check_fields
+from refcloud.conventions import Array, Colour, Range, Seed
+from refcloud.declared import Kind, enter_kind
 from refcloud.image import Picture
-from refcloud.noise import cloud_sheet, elias2d, overlap_octaves, sheet_map
+from refcloud.noise import elias2d, exponential_filter, overlap_octaves, sheet_map
 from refcloud.noise.sheet import WHITE
 from refcloud.raster import (
     Fragments,
@@ -51,46 +55,103 @@ from refcloud.raster import (
     draw_triangles,
     framebuffer,
 )
-from refcloud.scene import Model, Motion, Scene, View, enter
-from refcloud.scenes.demand_plane import flat_alone, greys
+from refcloud.scene import Model, Motion, View
+from refcloud.scenes.demand_plane import flat_alone, greys, still
 from refcloud.sky import sky_gradient
 
-SEED = 7
-SMALL, LARGE = 32, 256
-STEP = 0.01  # of the texture's width a frame
-FRAMES = 100  # after which the scroll is where it was
 MOST = 480.0  # what the sum of four octaves reaches
-TOP, BOTTOM = np.array([0.035, 0.13, 0.42]), np.array([0.30, 0.48, 0.74])
-LIGHT = np.array([1.0, 0.99, 0.97])
-SPAN = 0.75  # share of the sheet's height that the sky's window shows
 
 
-def raw_map() -> Array:
+@dataclass(frozen=True)
+class Sheet:
+    """What document C's program is made of; a teacher changes a number and looks.
+
+    Attributes
+    ----------
+    seed
+        Which map.
+    small, large
+        Sides of the map and of the sheet, a whole multiple of the map's.
+    octaves
+        Of the sheet.
+    cover, sharpness
+        Of the exponential filter.
+    step
+        Share of the texture's width that it moves in a frame.
+    top, bottom
+        The sky, linear RGB, of ``simple-sky``.
+    light
+        Of its clouds, linear RGB.
+    span
+        Share of the sheet's height that its window shows.
+    """
+
+    seed: Seed
+    small: Annotated[int, Range(2, 512)]
+    large: Annotated[int, Range(2, 4096)]
+    octaves: Annotated[int, Range(1, 8)]
+    cover: Annotated[float, Range(0.0, 255.0, "grey levels")]
+    sharpness: Annotated[float, Range(0.5, 0.999)]
+    step: Annotated[float, Range(0.0, 1.0)]
+    top: Colour
+    bottom: Colour
+    light: Colour
+    span: Annotated[float, Range(0.01, 10.0)]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+OWN = Sheet(
+    seed=7,
+    small=32,
+    large=256,
+    octaves=4,
+    cover=20.0,
+    sharpness=0.95,
+    step=0.01,
+    top=np.array([0.035, 0.13, 0.42]),
+    bottom=np.array([0.30, 0.48, 0.74]),
+    light=np.array([1.0, 0.99, 0.97]),
+    span=0.75,
+)
+
+
+def raw_map(of: Sheet = OWN) -> Array:
     """Give the map before it is smoothed."""
-    x, y = np.arange(1, SMALL + 1), np.arange(1, SMALL + 1)[:, None]
-    return 128.0 + 128.0 * elias2d(x, y, seed=SEED)
+    x, y = np.arange(1, of.small + 1), np.arange(1, of.small + 1)[:, None]
+    return 128.0 + 128.0 * elias2d(x, y, seed=of.seed)
 
 
-def first_octave() -> Array:
+def smoothed_map(of: Sheet = OWN) -> Array:
+    """Give the map smoothed by nine taps."""
+    return sheet_map(of.small, seed=of.seed)
+
+
+def first_octave(of: Sheet = OWN) -> Array:
     """Give the first octave: the map blown up to the sheet's size."""
-    return overlap_octaves(sheet_map(SMALL, seed=SEED), LARGE, octaves=1)
+    return overlap_octaves(smoothed_map(of), of.large, octaves=1)
 
 
-def octaves() -> Array:
-    """Give the sum of four octaves, as grey levels of 255."""
-    return overlap_octaves(sheet_map(SMALL, seed=SEED), LARGE) * (WHITE / MOST)
+def octaves(of: Sheet = OWN) -> Array:
+    """Give the sum of all octaves, as grey levels of 255."""
+    total = overlap_octaves(smoothed_map(of), of.large, octaves=of.octaves)
+    return total * (WHITE / MOST)
 
 
-def cloud() -> Array:
+def cloud(of: Sheet = OWN) -> Array:
     """Give the cloud."""
-    return cloud_sheet(LARGE, seed=SEED)
+    total = overlap_octaves(smoothed_map(of), of.large, octaves=of.octaves)
+    return exponential_filter(total, cover=of.cover, sharpness=of.sharpness)
 
 
-def step(model: Model, view: View, *, make: Callable[[], Array]) -> Picture:
+def step(
+    of: Sheet, model: Model, view: View, *, make: Callable[[Sheet], Array]
+) -> Picture:
     """Show one step of the program, a square for each number."""
     flat_alone(view)
     start = time.perf_counter()
-    values = make()
+    values = make(of)
     seconds = {"sheet": time.perf_counter() - start}
     # Squares of whole numbers, as many as fit, from the top row on.
     side = max(view.width, view.height)
@@ -100,7 +161,7 @@ def step(model: Model, view: View, *, make: Callable[[], Array]) -> Picture:
     return dataclasses.replace(greys(shown), seconds=seconds)
 
 
-def scrolled(frames: float, *, reset: bool = True) -> float:
+def scrolled(frames: float, *, reset: bool = True, step: float = OWN.step) -> float:
     """Give how far the texture has been moved after some frames.
 
     Parameters
@@ -110,15 +171,17 @@ def scrolled(frames: float, *, reset: bool = True) -> float:
     reset
         Whether each frame begins with the texture's matrix at identity, which the
         document owes to its own fault; without it every frame moves on from the last.
+    step
+        Of the texture's width a frame.
 
     Returns
     -------
     Of the texture's width: 0.01 n, or 0.01 (1 + 2 + ... + n).
     """
-    return STEP * frames if reset else STEP * frames * (frames + 1.0) / 2.0
+    return step * frames if reset else step * frames * (frames + 1.0) / 2.0
 
 
-def bytes_of_a_frame(size: int = LARGE) -> int:
+def bytes_of_a_frame(size: int = OWN.large) -> int:
     """Count the bytes of the texture that each frame leaves behind, mipmaps among them.
 
     Parameters
@@ -159,11 +222,11 @@ def moved(s: float, t: float = 0.0) -> Array:
     return matrix
 
 
-def kept_texture(view: View) -> Texture:
+def kept_texture(of: Sheet, view: View) -> Texture:
     """Make the texture, or take the one of the frame before."""
     stored = None if view.kept is None else view.kept.get("sheet")
     if stored is None:
-        texels = np.repeat(cloud()[..., None] / WHITE, 3, axis=-1)
+        texels = np.repeat(cloud(of)[..., None] / WHITE, 3, axis=-1)
         stored = Texture(
             texels, wrap="REPEAT", mag_filter="LINEAR", min_filter="LINEAR"
         )
@@ -172,12 +235,13 @@ def kept_texture(view: View) -> Texture:
     return stored
 
 
-def drawn_quad(model: Model, view: View) -> Picture:
+def drawn_quad(of: Sheet, model: Model, view: View) -> Picture:
     """Draw the document's scene: a grey quad over half of the window's sides."""
     flat_alone(view)
     start = time.perf_counter()
-    texture = kept_texture(view)
-    texture = dataclasses.replace(texture, matrix=moved(scrolled(view.time)))
+    texture = kept_texture(of, view)
+    matrix = moved(scrolled(view.time, step=of.step))
+    texture = dataclasses.replace(texture, matrix=matrix)
     buffer = framebuffer(view.width, view.height)
     # The window is 2 high and 2 wide, whatever its shape in pixels.
     wide = 0.5 * view.width / view.height
@@ -188,52 +252,47 @@ def drawn_quad(model: Model, view: View) -> Picture:
     return dataclasses.replace(shown, seconds={"draw": time.perf_counter() - start})
 
 
-def drawn_sky(model: Model, view: View) -> Picture:
+def drawn_sky(of: Sheet, model: Model, view: View) -> Picture:
     """Draw the sheet as clouds on a sky, on a quad that fills the window."""
     flat_alone(view)
     start = time.perf_counter()
-    texture = kept_texture(view)
+    texture = kept_texture(of, view)
     wind = np.zeros(3) if view.offset is None else np.asarray(view.offset)
     # What moves right is looked up further left.
-    matrix = moved(-scrolled(view.time) - wind[0], -wind[1])
+    matrix = moved(-scrolled(view.time, step=of.step) - wind[0], -wind[1])
     texture = dataclasses.replace(texture, matrix=matrix)
     buffer = framebuffer(view.width, view.height)
     size = {"width": view.width, "height": view.height}
-    buffer.pixels[..., :3] = sky_gradient(TOP, BOTTOM, **size)
+    buffer.pixels[..., :3] = sky_gradient(of.top, of.bottom, **size)
     wide = view.width / view.height
 
     def shade(fragments: Fragments) -> Array:
         opacity = Textured(texture)(fragments)[:, :1]
         behind = buffer.pixels[fragments.row, fragments.column]
-        rgba = behind + opacity * (np.array([*LIGHT, 1.0]) - behind)
+        rgba = behind + opacity * (np.array([*of.light, 1.0]) - behind)
         rgba[:, 3] = 1.0
         return rgba
 
-    mesh = quad(0.5 * wide, 0.5, SPAN * wide, SPAN)
+    mesh = quad(0.5 * wide, 0.5, of.span * wide, of.span)
     draw_triangles(buffer, window(view, 0.5), mesh, shade)
     seconds = {"draw": time.perf_counter() - start}
     return Picture(buffer.pixels[..., :3], None, (), seconds)
 
 
-def no_model() -> Model:
-    """Make nothing yet: the sheet is the scene's texture."""
-    return Model({})
+def scrolling(of: Sheet, *, blown: bool = False) -> Motion:
+    """Say after how many frames the scroll is where it was, and what wind moves."""
+    period = 1.0 / of.step if of.step else 1.0
+    repeats = (1.0, 1.0, math.inf) if blown else None
+    return Motion(period=period, repeats=repeats)
 
 
-SCROLL = Motion(period=float(FRAMES))
-BLOWN = Motion(period=float(FRAMES), repeats=(1.0, 1.0, math.inf))
 for name, title, draw, motion in (
-    ("noise", "the random map", partial(step, make=raw_map), Motion()),
-    (
-        "smoothed",
-        "the map smoothed",
-        partial(step, make=partial(sheet_map, SMALL, seed=SEED)),
-        Motion(),
-    ),
-    ("interpolated", "the first octave", partial(step, make=first_octave), Motion()),
-    ("octaves", "four octaves", partial(step, make=octaves), Motion()),
-    ("filtered", "the exponential filter", partial(step, make=cloud), Motion()),
-    ("quad", "the scrolling quad, to the letter", drawn_quad, SCROLL),
-    ("sky", "the sheet as a scrolling sky", drawn_sky, BLOWN),
+    ("noise", "the random map", partial(step, make=raw_map), still),
+    ("smoothed", "the map smoothed", partial(step, make=smoothed_map), still),
+    ("interpolated", "the first octave", partial(step, make=first_octave), still),
+    ("octaves", "four octaves", partial(step, make=octaves), still),
+    ("filtered", "the exponential filter", partial(step, make=cloud), still),
+    ("quad", "the scrolling quad, to the letter", drawn_quad, scrolling),
+    ("sky", "the sheet as a scrolling sky", drawn_sky, partial(scrolling, blown=True)),
 ):
-    enter(Scene(f"simple-{name}", f"document C: {title}", no_model, draw, motion))
+    enter_kind(Kind(f"simple-{name}", f"document C: {title}", OWN, draw, motion))

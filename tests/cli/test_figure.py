@@ -23,7 +23,7 @@ def test_one_figure_is_drawn_with_its_caption(run, here: Path) -> None:
         "man-05: basis functions (document M, figure 5; quick)"
     )
     assert out.splitlines()[-1] == "man-05.png"
-    expected = find_figure("man-05").draw(rc.scenes.View(320, 240))
+    expected = find_figure("man-05").draw(rc.scenes.View(640, 480))
     expected.save("expected.png", dither=False)
     assert Path("man-05.png").read_bytes() == Path("expected.png").read_bytes()
 

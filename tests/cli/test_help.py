@@ -22,6 +22,7 @@ from refcloud.cli.entry import COMMANDS
 from refcloud.cli.figure import Setting
 from refcloud.cli.studio import Page
 from refcloud.conventions import Range
+from refcloud.figure import figures
 from refcloud.march import Mixing
 from refcloud.noise_pictures import noise_picture
 
@@ -182,7 +183,13 @@ def test_list_names_every_scene_with_its_title(run) -> None:
     status, out, err = run("list")
     assert (status, err) == (0, "")
     lines = dict(line.split(maxsplit=1) for line in out.splitlines())
-    assert lines == {name: scene.title for name, scene in rc.scenes.SCENES.items()}
+    scenes = {name: scene.title for name, scene in rc.scenes.SCENES.items()}
+    assert scenes.items() <= lines.items()
+    # And every figure that is no scene.
+    assert {*lines} == {*scenes, *figures()}
+    assert lines["man-05"] == (
+        "document M, figure 5: basis functions (refcloud figure man-05)"
+    )
 
 
 def test_four_pi_is_said_as_a_number(blocks) -> None:
