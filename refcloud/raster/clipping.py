@@ -35,15 +35,26 @@ def clip(
     Corners, those of cuts behind the others; faces, shape (3, T'), in the order of the
     triangles that they are parts of; and which triangle that is, shape (T',).
 
-    Source: Sutherland and Hodgman's way to cut polygons; OpenGL 4.6, section 13.7.
+    Source: Cohen and Sutherland's outcodes, Sutherland and Hodgman's way to cut
+    polygons; OpenGL 4.6, section 13.7.
     """
-    source = np.arange(faces.shape[1])
-    for a, b, c, d in planes:
-        inside = a * corners[0] + b * corners[1] + c * corners[2] + d
-        outside = inside < 0.0
-        if not outside.any():
+    # A bit for each plane that a corner lies outside of tells, of most triangles, that
+    # nothing is cut: no bit is set, or one is set at all three corners.
+    code = np.zeros(corners.shape[1], np.uint8)
+    for number, plane in enumerate(planes):
+        code |= (_inside(corners, plane) < 0.0).view(np.uint8) << np.uint8(number)
+    first, second, third = code[faces]
+    touched = (first | second | third) > 0
+    if not touched.any():
+        return corners, faces, np.arange(faces.shape[1])
+    whole = np.flatnonzero(~touched)
+    source = np.flatnonzero(touched & (first & second & third == 0))
+    left, faces = faces[:, whole], faces[:, source]
+    for plane in planes:
+        inside = _inside(corners, plane)
+        out = (inside < 0.0)[faces]  # (3, T)
+        if not out.any():
             continue
-        out = outside[faces]  # (3, T)
         count = out.sum(axis=0)
         parts = [(faces[:, count == 0], source[count == 0])]
         for many in (1, 2):
@@ -72,6 +83,13 @@ def clip(
                 parts.append((np.stack([new[0], third, new[1]]), which))
         faces = np.concatenate([part for part, _ in parts], axis=1)
         source = np.concatenate([which for _, which in parts])
-        order = np.argsort(source, kind="stable")
-        faces, source = faces[:, order], source[order]
-    return corners, faces, source
+    faces = np.concatenate([left, faces], axis=1)
+    source = np.concatenate([whole, source])
+    order = np.argsort(source, kind="stable")
+    return corners, faces[:, order], source[order]
+
+
+def _inside(corners: Array, plane: Array) -> Array:
+    """Tell how far inside of a plane corners lie, shape (V,)."""
+    a, b, c, d = plane
+    return a * corners[0] + b * corners[1] + c * corners[2] + d
