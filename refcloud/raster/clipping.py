@@ -1,4 +1,4 @@
-"""Triangles cut by planes, all at once.
+"""Triangles and lines cut by planes, all at once.
 
 A triangle with one corner outside leaves a quad, that is two triangles, one with two
 outside a smaller triangle. What is cut gets new corners at the end of the list, with
@@ -89,7 +89,36 @@ def clip(
     return corners, faces[:, order], source[order]
 
 
+def cut_lines(ends: Array, planes: Array) -> Array:
+    """Cut lines by planes, one plane after the other.
+
+    Parameters
+    ----------
+    ends
+        Right, up and depth of both ends, shape (N, 2, 3).
+    planes
+        Shape (P, 4), as `clip`.
+
+    Returns
+    -------
+    The ends of what is left, shape (N', 2, 3), in the lines' order.
+    """
+    for plane in planes:
+        inside = _inside(np.moveaxis(ends, -1, 0), plane)  # (N, 2)
+        kept = (inside >= 0.0).any(axis=1)
+        ends, inside = ends[kept], inside[kept]
+        which, outer = np.nonzero(inside < 0.0)
+        if not which.size:
+            continue
+        # One end lies inside: the new one lies between, seen from there.
+        start, stop = ends[which, 1 - outer], ends[which, outer]
+        within, beyond = inside[which, 1 - outer], inside[which, outer]
+        share = within / (within - beyond)
+        ends[which, outer] = start + share[:, None] * (stop - start)
+    return ends
+
+
 def _inside(corners: Array, plane: Array) -> Array:
-    """Tell how far inside of a plane corners lie, shape (V,)."""
+    """Tell how far inside of a plane corners, shape (3 or more, ...), lie."""
     a, b, c, d = plane
     return a * corners[0] + b * corners[1] + c * corners[2] + d

@@ -76,13 +76,8 @@ class Spans:
 
     def batches(self, most: int) -> Iterator[Spans]:
         """Split them so that each part has at most so many pixels, or one span."""
-        ends = np.cumsum(self.count)
-        start = 0
-        while start < len(ends):
-            done = int(ends[start - 1]) if start else 0
-            stop = max(int(np.searchsorted(ends, done + most, "right")), start + 1)
-            yield self.some(slice(start, stop))
-            start = stop
+        for part in batches(self.count, most):
+            yield self.some(part)
 
     def pixels(self) -> tuple[Indices, Indices, Indices]:
         """Give triangle, row and column of every pixel, span after span."""
@@ -92,6 +87,29 @@ class Spans:
             for of_span in (self.triangle, self.row, self.first - begin)
         )
         return triangle, row, first + np.arange(len(row))
+
+
+def batches(counts: Indices, most: int) -> Iterator[slice]:
+    """Split a list so that the counts of each part add up to at most so many, or one.
+
+    Parameters
+    ----------
+    counts
+        At least 0 each, shape (n,).
+    most
+        The largest sum of a part of several.
+
+    Yields
+    ------
+    Slices of the list, one after the other.
+    """
+    ends = np.cumsum(counts)
+    start = 0
+    while start < len(ends):
+        done = int(ends[start - 1]) if start else 0
+        stop = max(int(np.searchsorted(ends, done + most, "right")), start + 1)
+        yield slice(start, stop)
+        start = stop
 
 
 @checked
@@ -161,20 +179,14 @@ def row_spans(x: Places, y: Places, rows: slice, columns: slice) -> Iterator[Spa
     top = np.maximum(-((HALF - y.min(axis=0)) // SUBPIXEL), rows.start)
     bottom = np.minimum(-((HALF - y.max(axis=0)) // SUBPIXEL), rows.stop)
     height = np.where(area_of(x, y) > 0, np.maximum(bottom - top, 0), 0)
-    ends = np.cumsum(height)
-    start = 0
-    while start < len(ends):
-        done = int(ends[start - 1]) if start else 0
-        stop = int(np.searchsorted(ends, done + ROWS_AT_ONCE, side="right"))
-        stop = max(stop, start + 1)
-        part = slice(start, stop)
-        triangle = np.repeat(np.arange(start, stop), height[part])
-        within = np.arange(len(triangle)) - (ends - height - done)[triangle]
+    before = np.cumsum(height) - height
+    for part in batches(height, ROWS_AT_ONCE):
+        triangle = np.repeat(np.arange(part.start, part.stop), height[part])
+        within = np.arange(len(triangle)) - (before - before[part.start])[triangle]
         row = top[triangle] + within
         low, high = _columns(x, y, triangle, row, columns)
         found = high > low
         yield Spans(triangle[found], row[found], low[found], high[found] - low[found])
-        start = stop
 
 
 def area_of(x: Places, y: Places) -> Indices:

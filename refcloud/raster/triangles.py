@@ -28,15 +28,16 @@ from refcloud.raster.varying import Fragments, Run, View, planes_through
 from refcloud.raster.visible import layers, pieces, places
 from refcloud.raster.window import (
     NEAR,
+    Far,
     Near,
     planes_of,
+    refuse_depths,
     refuse_other_size,
     snapped,
     to_camera,
 )
 
 Cull = Literal["FRONT", "BACK", "FRONT_AND_BACK"]
-Far = Annotated[float, Range(1e-100, 1e100, "scene units")]
 AT_ONCE = 1 << 17  # fragments that are sorted out together
 SHADED_AT_ONCE = 1 << 15  # their numbers then stay in the cache
 # Largest error of texels mixed in float32, of the largest among them: each of up to
@@ -168,7 +169,9 @@ def draw_triangles(
     store, scratch = flattened(buffer), np.empty(height * width, np.int64)
     for fragments in covered(camera, mesh, box, **how):
         pixel = fragments.pixel(width)
-        for layer, left in layers(store, states, pixel, fragments, scratch):
+        depths, alone = (lambda f=fragments: f.depth), fragments.alone
+        sorted_out = layers(store, states, pixel, depths, scratch, alone=alone)
+        for layer, left in sorted_out:
             for part in pieces(layer, SHADED_AT_ONCE):
                 some = fragments.of(part)
                 depth = None if left.depth_func is None else some.depth
@@ -191,13 +194,7 @@ def _refuse_unfit(
     camera: AnyCamera, mesh: Mesh, shade: Any, state: State, near: float, far: Any
 ) -> None:
     """Refuse arguments that do not fit each other."""
-    if far is not None and far <= near:
-        got = f"{far:g}, near {near:g}"
-        raise ValueError(complaint("far", "a depth beyond near", got))
-    parallel = not isinstance(camera, Camera)
-    if parallel and far is None and state.depth_func is not None:
-        expected = "a depth for the depth test of parallel rays"
-        raise ValueError(complaint("far", expected, "None"))
+    refuse_depths(camera, near, far, state.depth_func)
     if isinstance(shade, Textured):
         needed = shade.first + shade.texture.dimension
         if needed > mesh.attributes.shape[1]:

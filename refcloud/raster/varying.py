@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -131,7 +132,7 @@ class Run:
         """Give their change from column to column, shape (1 + K, R)."""
         return self.planes.along_x[:, self.spans.triangle]
 
-    def each(self, of_span: Array) -> Array:
+    def each(self, of_span: NDArray[Any]) -> Any:
         """Give the spans' numbers, shape (..., R), for each pixel, shape (..., n)."""
         return np.repeat(of_span, self.spans.count, axis=-1)
 
@@ -253,7 +254,7 @@ class Fragments:
         found += self._each(self.run.start[k])
         return found
 
-    def _each(self, of_span: Array) -> Array:
+    def _each(self, of_span: NDArray[Any]) -> Any:
         """Give the spans' numbers, shape (..., R), for each pixel, shape (..., n)."""
         if self.some is None:
             return self.run.each(of_span)

@@ -7,14 +7,13 @@ last fragment, or the nearest one, and the others are never shaded.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.raster.store import DEPTH_FUNCS, State, Store
-from refcloud.raster.varying import Fragments
 
 Indices = NDArray[np.int64]
 Some = Indices | slice  # of a list of fragments; a slice is free
@@ -24,8 +23,10 @@ def layers(
     store: Store,
     states: tuple[State, State],
     pixel: Some,
-    fragments: Fragments,
+    depth: Callable[[], Array],
     scratch: Indices,
+    *,
+    alone: bool = False,
 ) -> Iterator[tuple[Some, State]]:
     """Sort out fragments, and note depths where no more needs to be known of them.
 
@@ -38,10 +39,12 @@ def layers(
     pixel
         Row times width plus column of each, in drawing order, shape (n,); a slice only
         where none shares its pixel.
-    fragments
-        The fragments.
+    depth
+        Gives the depth of each, shape (n,), where it is asked.
     scratch
         One whole number for each pixel of the framebuffer, whatever it is.
+    alone
+        Whether it is known that none shares its pixel.
 
     Yields
     ------
@@ -50,11 +53,13 @@ def layers(
     """
     state, tested = states
     tests = state.depth_func is not None and store.depth is not None
-    if fragments.alone:
+    if alone:
         if tests:
-            yield _passing(store, state, pixel, fragments.depth), tested
+            yield _passing(store, state, pixel, depth()), tested
+        elif isinstance(pixel, slice):
+            yield slice(0, pixel.stop - pixel.start), state
         else:
-            yield slice(0, len(fragments.column)), state
+            yield slice(0, len(pixel)), state
         return
     assert not isinstance(pixel, slice)
     opaque = state.blending is None
@@ -63,7 +68,7 @@ def layers(
         last = _last(pixel, np.arange(len(pixel)), scratch)
         yield _all(last, len(pixel)), state
     elif opaque and state.depth_func in ("LESS", "LEQUAL") and state.depth_mask:
-        seen = _nearest(store, state, pixel, fragments.depth, scratch)
+        seen = _nearest(store, state, pixel, depth(), scratch)
         yield seen, tested
     else:
         for layer in _in_turn(pixel, scratch):
