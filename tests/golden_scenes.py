@@ -18,6 +18,7 @@ from refcloud import (
     load_metaballs,
     render,
 )
+from refcloud.bench import stability
 from refcloud.figure import find_figure
 from refcloud.raster import framebuffer, splat
 from refcloud.scenes import SCENES, Model, View
@@ -77,7 +78,15 @@ def unfitted(name: str, view: View = VIEW) -> Picture:
     return scene.draw(scene.model(), view)
 
 
+def stability_map() -> Picture:
+    """Judge every cell of the map of stability, without its words."""
+    return stability.bare_map(stability.panels(stability.PROBES), cell=2, columns=6)
+
+
+# Drawn in the stage `slow` alone.
+SLOW = ("stability",)
 GOLDEN: dict[str, Callable[[], Picture]] = {
+    "stability": stability_map,
     "blend-fan": blend_fan,
     "cumulus": partial(fitted, "cumulus", "cumulus"),
     "demand": partial(unfitted, "demand"),

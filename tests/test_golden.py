@@ -6,9 +6,14 @@ import functools
 
 import golden
 import pytest
-from golden_scenes import GOLDEN
+from golden_scenes import GOLDEN, SLOW
 
 from refcloud.image import Picture
+
+NAMES = [
+    pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else [])
+    for name in GOLDEN
+]
 
 
 @functools.cache
@@ -21,7 +26,7 @@ def regenerate(request: pytest.FixtureRequest) -> list[str]:
     return request.config.getoption("regenerate")
 
 
-@pytest.mark.parametrize("name", GOLDEN)
+@pytest.mark.parametrize("name", NAMES)
 def test_scene_looks_as_its_golden_picture(name: str, regenerate: list[str]) -> None:
     if name in regenerate:
         golden.regenerate(name, drawn(name))
@@ -29,7 +34,7 @@ def test_scene_looks_as_its_golden_picture(name: str, regenerate: list[str]) -> 
     golden.check_picture(name, drawn(name))
 
 
-@pytest.mark.parametrize("name", GOLDEN)
+@pytest.mark.parametrize("name", NAMES)
 def test_scene_keeps_its_probes(name: str, regenerate: list[str]) -> None:
     if name in regenerate:
         pytest.skip("its probes are being renewed")
