@@ -20,7 +20,7 @@ from refcloud.camera import rays
 from refcloud.conventions import Range
 
 lesson = Lesson()
-CLOUD = rc.generate(seed=7, voxel=5.0 if lesson.quick else 2.0)
+CLOUD = rc.generate(seed=7, voxel=5.0 if lesson.quick else 1.4)
 
 
 def picture(

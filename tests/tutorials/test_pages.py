@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
@@ -50,6 +51,38 @@ def test_every_tutorial_has_its_parts(path: Path) -> None:
     solutions = text.split("## Solutions")[1]
     for number in "123":
         assert re.search(rf"^# {number}[.:] ", solutions, re.M), f"solution {number}"
+
+
+@pytest.mark.parametrize("path", PATHS, ids=stem)
+def test_one_function_draws_the_main_picture(path: Path) -> None:
+    text = path.read_text("utf-8")
+    made = [
+        node
+        for node in ast.parse(text).body
+        if isinstance(node, ast.FunctionDef) and node.name == "picture"
+    ]
+    assert len(made) == 1
+    spec = made[0].args
+    assert not spec.args, "every knob by its name"
+    assert len(spec.kwonlyargs) >= 2
+    assert len(spec.kw_defaults) == len(spec.kwonlyargs)
+    described = parameter_texts_of(ast.get_docstring(made[0]) or "")
+    for knob in spec.kwonlyargs:
+        assert knob.annotation is not None
+        words = ast.unparse(knob.annotation)
+        # A number has a range, a name is one of a few.
+        assert (
+            "Range(" in words
+            or "Literal" in words
+            or words[0].isupper()
+            or (words == "bool")
+        ), f"{knob.arg}: {words}"
+        assert knob.arg in described, f"{knob.arg} has no description"
+    assert len(re.findall(r"lesson\.show\(\s*picture,", text)) == 1
+
+
+def parameter_texts_of(text: str) -> set[str]:
+    return set(re.findall(r"^(\w+)\n    \S", text, re.M))
 
 
 def _calls(body: str) -> list:

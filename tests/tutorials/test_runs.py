@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import page
@@ -79,6 +81,21 @@ def test_a_knob_draws_the_main_picture_alone(
     else:
         page.draw(path, tmp_path, "--quick")
     assert {file.stem for file in tmp_path.iterdir()} == files
+
+
+def test_cells_of_a_notebook_show_pictures_and_write_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    # The words are the kernel's own, and none of a tutorial's business.
+    monkeypatch.setattr(sys, "argv", ["kernel", "-f", "connection.json", "--quick"])
+    path = next(path for path in PATHS if path.stem == "02_hash")
+    names: dict[str, Any] = {"__name__": "__main__"}
+    exec(compile(path.read_text("utf-8"), path.name, "exec"), names)
+    assert not list(tmp_path.iterdir())
+    shown = names["lesson"].show(names["picture"], "02-hash", "again")
+    assert shown.codes.shape == (320, 480, 3)
+    assert shown._repr_png_().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(
