@@ -129,7 +129,7 @@ def axes(camera: AnyCamera) -> Array:
     -------
     Shape (3, 3); the rows are right, up and back, unit vectors.
 
-    Source: the look-at frame of OpenGL.
+    Source: the look-at frame of OpenGL; E28: `up` gives way only along the view.
 
     Examples
     --------

@@ -24,6 +24,7 @@ from refcloud.lighting import (
     solved_light,
     sunward,
 )
+from refcloud.lighting.hidden import touches
 from refcloud.lighting.solved import Lights
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
@@ -121,6 +122,9 @@ def draw_layers(
     for number, layer in enumerate(layers):
         share = tolerance / len(layers)
         lit = layer.lit
+        if not touches(layer.balls, camera):
+            skipped += _unseen(layer, suns)
+            continue
         if layer.scattering != "single":
             lit, lights = solved_layer(layer, suns, camera, LIGHT * share, observe)
             solved += lights
@@ -157,6 +161,18 @@ def draw_layers(
     if solved:
         notes = (*notes, f"scattered light: {report_of(solved)}")
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
+
+
+def _unseen(layer: Layer, suns: tuple[Sun, ...]) -> list[Skipped]:
+    """Report a cloud of which no ball touches the picture: neither pass is run."""
+    if not len(layer.balls):
+        return []
+    count, rows = len(layer.balls), []
+    if layer.lit is None:
+        lights = len(suns) + 2  # sky and ground
+        what = "lights of clouds off the picture"
+        rows.append(Skipped("light", what, lights, lights))
+    return [*rows, Skipped("eye", "balls off the picture", count, count)]
 
 
 def solved_layer(

@@ -17,7 +17,7 @@ FLOORS = (
     ("conventions", "references"),
     ("refusal",),
     ("checking",),
-    ("files",),
+    ("files", "parameters"),
     ("noise", "optics", "camera", "image"),
     ("cloudmap", "drawing"),
     ("metaballs", "transport"),

@@ -31,7 +31,7 @@ TOLERANCES = (1e-5, 1e-3, 1.5e-2)
 COUNTS = {1200: 100, 10_000: 200, 100_000: 400}
 LITERAL_SIDE, FINE_SIDE = 512, 700  # pixels of the sun's buffer
 # Antialiased discs are read in smaller ones: of no larger error, up to 1200 and beyond.
-SIDE, SIDE_OF_MANY = 192, 208
+SIDE, SIDE_OF_MANY = 184, 208
 # Light that is off by less than this share of the sun's: the buffer's own error is
 # larger, whether hard discs at 512 or antialiased ones.
 LIGHT = 3e-3

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from refcloud import bench
-from refcloud.bench import stability
+from refcloud.bench import skipping, stability
 from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import ready, say
 from refcloud.cli.parser import Command
@@ -45,7 +45,8 @@ PLOT = FileOption(
 )
 FIGURES = (".png",)
 STABILITY = "stability"  # a map of errors, without times
-NAMES = (*bench.SUBJECTS, STABILITY)
+SKIPPING = "skipping"  # what each named scene leaves out
+NAMES = (*bench.SUBJECTS, STABILITY, SKIPPING)
 
 
 def command() -> Command:
@@ -68,6 +69,8 @@ def run(words: Sequence[str]) -> int:
         figure = ready(figure, FIGURES, PLOT.flag)
     if name == STABILITY:
         return _stability(how, figure)
+    if name == SKIPPING:
+        return _skipping(how, figure)
     subject = bench.SUBJECTS[name]
     rows = bench.run(subject, how.quick)
     if how.json:
@@ -89,4 +92,16 @@ def _stability(how: Measurement, figure: Path | None) -> int:
         say(stability.text_of(panels))
     if figure is not None:
         say(str(stability.labelled_map(panels).save(figure, tone="none")))
+    return 0
+
+
+def _skipping(how: Measurement, figure: Path | None) -> int:
+    """Draw the named scenes, small ones where `quick`, and list what they skipped."""
+    if figure is not None:
+        raise ValueError(complaint(PLOT.flag, "none beside skipping, a table", "one"))
+    size, found = skipping.named_savings(how.quick)
+    if how.json:
+        say(json.dumps(skipping.rows_of(found), indent=1))
+    else:
+        say(skipping.text_of(size, found))
     return 0

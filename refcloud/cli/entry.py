@@ -27,6 +27,7 @@ COMMANDS = {
     "list": "refcloud.cli.scenes",
     "noise": "refcloud.cli.noise",
     "bench": "refcloud.cli.bench",
+    "studio": "refcloud.cli.studio",
 }
 BAD_INPUT = 2
 # As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE).

@@ -52,8 +52,10 @@ class _Arguments(argparse.ArgumentParser):
 class Command:
     """One command: its arguments, its options in groups, and how both are read."""
 
-    def __init__(self, name: str, about: str, output: str = "") -> None:
-        self.name = f"refcloud {name}"
+    def __init__(
+        self, name: str, about: str, output: str = "", program: str = "refcloud"
+    ) -> None:
+        self.name = f"{program} {name}"
         self._options: dict[str, Option] = {}
         self._arguments: list[str] = []
         self._optional = 0

@@ -63,7 +63,7 @@ def sized_share(
     forward: float,
     most: float,
     shrinks: bool,
-    watch: Observer,
+    watch: Observer | None,
     carry: Carry | None = None,
 ) -> Sized:
     """Carry one light, in as small a buffer as its error allows, unchecked.
@@ -88,7 +88,8 @@ def sized_share(
         allowed = BUFFER * most
         coarse = None  # the light at half the side that is tried
         for side in _promising(view, medium, look, most):
-            fine, sweeps, seen = _at(side, view, medium, look, forward, SWEEPS * most)
+            how = medium, look, forward, SWEEPS * most, watch is not None
+            fine, sweeps, seen = _at(side, view, *how)
             if coarse is not None:
                 change = np.abs(fine - coarse[0]).max(initial=0.0)
                 rough = max(run.bound for run in (*sweeps, *coarse[1], NONE))
@@ -98,7 +99,8 @@ def sized_share(
                 bound = max(PER_CHANGE * (float(change) + 2.0 * rough), promised)
                 if bound <= allowed:
                     for name, value in seen:
-                        watch(name, value)
+                        if watch:
+                            watch(name, value)
                     return Sized(fine, sweeps, side**2, whole, bound)
             coarse = fine, sweeps
         most -= allowed  # so that the errors of all lights add up to what is allowed
@@ -150,7 +152,13 @@ def _rise(view: LightView, medium: Medium, look: Look, side: int) -> float:
 
 
 def _at(
-    side: int, view: LightView, medium: Medium, look: Look, forward: float, most: float
+    side: int,
+    view: LightView,
+    medium: Medium,
+    look: Look,
+    forward: float,
+    most: float,
+    watched: bool,
 ) -> tuple[Array, list[Sweeps], list[tuple[str, Any]]]:
     """Carry the light at another side; what would be watched is kept for later."""
     scale = side / view.side
@@ -168,6 +176,6 @@ def _at(
         look,
         forward,
         most,
-        lambda name, value: seen.append((name, value)),
+        (lambda name, value: seen.append((name, value))) if watched else None,
     )
     return share, sweeps, seen

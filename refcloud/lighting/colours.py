@@ -65,8 +65,9 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     gain = gain_of(balls, medium, lit.look)
     for s, sun in enumerate(lit.suns):
         # The sun's light travels along -direction and leaves toward the eye.
-        x, y, z = (toward_eye * sun.direction).T
-        cos_theta = np.clip(-(x + y + z), -1.0, 1.0)
+        x, y, z = toward_eye.T
+        a, b, c = sun.direction
+        cos_theta = np.clip(-(x * a + y * b + z * c), -1.0, 1.0)
         scattered = phase(medium, cos_theta)[:, None] * medium.albedo_rgb
         colours[:, s] = scattered * lit.light[s] * gain
         if lit.glow is not None:
@@ -90,28 +91,41 @@ def gain_of(balls: Metaballs, medium: Medium, look: Look) -> Array:
     gain = np.ones((len(balls.radii), 3))
     if look.scattering == "split":
         return gain
-    for channel in range(3):
-        albedo = float(medium.albedo_rgb[channel])
-        tau = ball_depths(balls, float(medium.sigma_t_rgb[channel]), look)
-        kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
-        # Depth as eq 26 counts it, held where pass 1 holds it, over the opacity.
-        held = handed_on(look, albedo, 0.0)(tau)
-        effective = np.divide(held, kappa, out=np.array(tau), where=kappa > 0.0)
-        opacity = -np.expm1(-tau)
-        thin = opacity <= 0.0
-        gain[:, channel] = np.where(thin, 1.0, effective / np.where(thin, 1.0, opacity))
+    keys = zip(medium.albedo_rgb.tolist(), medium.sigma_t_rgb.tolist(), strict=True)
+    found: dict[tuple[float, float], Array] = {}  # of a grey medium only one
+    for channel, key in enumerate(keys):
+        if key not in found:
+            found[key] = _gain_man2003(ball_depths(balls, key[1], look), key[0], look)
+        gain[:, channel] = found[key]
     return gain * (look.solid_angle / WHOLE_SPHERE)
+
+
+def _gain_man2003(tau: Array, albedo: float, look: Look) -> Array:
+    """Give depth as eq 26 counts it, held where pass 1 holds it, over the opacity."""
+    kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
+    held = handed_on(look, albedo, 0.0)(tau)
+    effective = np.divide(held, kappa, out=np.array(tau), where=kappa > 0.0)
+    opacity = -np.expm1(-tau)
+    thin = opacity <= 0.0
+    return np.where(thin, 1.0, effective / np.where(thin, 1.0, opacity))
 
 
 def _toward_eye(centers: Array, camera: AnyCamera) -> Array:
     """Give wo, the unit vector from each ball to the eye."""
     if not isinstance(camera, Camera):
         return np.broadcast_to(axes(camera)[2], centers.shape)
-    offset = camera.eye - centers
-    length = np.sqrt(np.square(offset).sum(axis=1, keepdims=True))
-    # A ball around the eye itself is seen along the view axis.
+    # By axis: whole rows of memory.
+    offset = np.stack(
+        [at - axis for at, axis in zip(camera.eye, centers.T, strict=True)]
+    )
+    x, y, z = np.square(offset)
+    length = np.sqrt(x + y + z)
     away = length > 0.0
-    return np.where(away, offset / np.where(away, length, 1.0), axes(camera)[2])
+    if away.all():
+        return (offset / length).T
+    # A ball around the eye itself is seen along the view axis.
+    aside = (offset / np.where(away, length, 1.0)).T
+    return np.where(away[:, None], aside, axes(camera)[2])
 
 
 def clearness(haze: Haze | None, centers: Array, camera: AnyCamera) -> Array:

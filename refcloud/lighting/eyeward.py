@@ -13,8 +13,9 @@ from typing import Annotated
 from refcloud.camera import AnyCamera
 from refcloud.checking import checked
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
+from refcloud.lighting.certified_tiles import certified_tiles
 from refcloud.lighting.colours import Haze
-from refcloud.lighting.flat_tiles import certified_tiles, flat_balls
+from refcloud.lighting.flat_tiles import flat_balls
 from refcloud.lighting.hidden import without_faint
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.seen import seen_by, shading_of

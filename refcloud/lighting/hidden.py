@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from refcloud.camera import AnyCamera
+from refcloud.camera import AnyCamera, project
 from refcloud.conventions import Array, Skipped
+from refcloud.metaballs import Metaballs
 
 Mask = NDArray[np.bool_]
 
@@ -34,6 +35,18 @@ def on_screen(
     return visible, [
         Skipped("eye", "balls off the picture", off, len(x))
     ] if off else []
+
+
+def touches(balls: Metaballs, camera: AnyCamera) -> bool:
+    """Tell whether any ball touches the picture: a cloud of others needs no light.
+
+    Parameters
+    ----------
+    balls, camera
+        The cloud, and the eye.
+    """
+    x, y, _, scale = project(camera, balls.centers)
+    return bool(on_screen(x, y, balls.radii * scale, camera)[0].any())
 
 
 def without_faint(

@@ -1,9 +1,9 @@
 """The pixels of the light's framebuffer tile by tile: for sweeps within a tolerance.
 
-As `fragments`, but a ball is listed by the tile, at all of its 8 x 8 pixels, whether it
+As `fragments`, but a ball is listed by the tile, at all of its 4 x 4 pixels, whether it
 covers them or not: pairs of ball and tile are far fewer than fragments, nothing is
 sorted or looked up by the pixel, and one small product of matrices, in float32, gives
-a ball's squared distances to 64 pixels (see `quadratics`).
+a ball's squared distances to 16 pixels (see `quadratics`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from refcloud.raster.quadratics import FORMS
 from refcloud.raster.splat import SOFT_EDGE
 from refcloud.raster.tile_lists import Discs, ranges_of, tile_lists
 
-EDGE = 8  # pixels along a tile's edge: balls of a few pixels touch few of them
-TOGETHER = 512  # pairs at a time: they stay in the cache, and products are small ones
+EDGE = 4  # pixels along a tile's edge: balls of a few pixels touch few others
+TOGETHER = 2048  # pairs at a time: they stay in the cache, and products are small ones
 READ = ("footprint", "antialiased")  # means that no rounding makes jump
 
 
@@ -55,23 +55,25 @@ def light_tiles(view: LightView, look: Look, tau: Array) -> Fragments | None:
     across = -(-side // EDGE)
     lists = tile_lists(discs, ranges, listed, (0, across, 0, across), EDGE)
     ranked, counts, place = slot_after_slot(lists.count)
-    ball = lists.ball[place]
+    ball = lists.ball.take(place)
     tile = np.concatenate([ranked[:count] for count in counts] or [ranked])
-    inverse = (1.0 / radius)[ball]
-    cx = (x[ball] - (lists.column[tile] + 0.5) * EDGE) * inverse
-    cy = (y[ball] - (lists.row[tile] + 0.5) * EDGE) * inverse
+    inverse = (1.0 / radius).take(ball)
+    middle = [(at + 0.5) * EDGE for at in (lists.column, lists.row)]
+    cx, cy = (
+        (at.take(ball) - mid.take(tile)) * inverse
+        for at, mid in zip((x, y), middle, strict=True)
+    )
 
     # 2. q = cx^2 + cy^2 - 2 cx x / r - 2 cy y / r + (x^2 + y^2) / r^2 as a product.
-    four = np.stack(
-        [cx * cx + cy * cy, -2.0 * cx * inverse, -2.0 * cy * inverse, inverse**2],
-        axis=1,
-        dtype=np.float32,
-        casting="same_kind",
-    )
+    four = np.empty((len(ball), 4), np.float32)
+    four[:, 0] = cx * cx + cy * cy
+    four[:, 1] = -2.0 * cx * inverse
+    four[:, 2] = -2.0 * cy * inverse
+    four[:, 3] = inverse * inverse
     step = np.arange(0.5 - EDGE / 2, EDGE / 2)
     px, py = np.tile(step, EDGE), np.repeat(step, EDGE)
     basis = np.stack([np.ones_like(px), px, py, px * px + py * py]).astype(np.float32)
-    wide = radius[ball].astype(np.float32)[:, None]
+    wide = radius.astype(np.float32).take(ball)[:, None]
     form, zeros = FORMS[look.footprint], np.zeros((TOGETHER, EDGE**2), np.float32)
     ones = zeros + np.float32(1.0)
     # In one piece: the system maps large ones in large pages, which is soon done.
@@ -107,7 +109,7 @@ def light_tiles(view: LightView, look: Look, tau: Array) -> Fragments | None:
         for count in counts:
             read[begin : begin + count] *= inside[:count]
             begin += count
-    number = order[ball]
+    number = order.take(ball)
     sums = np.einsum("ts->t", read)
     total = np.bincount(number, sums, minlength=len(order)).astype(np.float64)
     if not (total > 0.0).all():
@@ -119,7 +121,7 @@ def light_tiles(view: LightView, look: Look, tau: Array) -> Fragments | None:
     terms = np.square(1.0 + (EDGE - 1.0) * np.sqrt(0.5) / radius)
     steep = 3.0 if look.transmittance == "linear" else 1.7 * np.sqrt(tau[order])
     each = 1.0 + 2.0 * terms * steep
-    added = float(np.add.reduceat(each[lists.ball], lists.first).max())
+    added = float(np.add.reduceat(each.take(lists.ball), lists.first).max())
     return Fragments(
         number,
         weight,

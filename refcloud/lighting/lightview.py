@@ -121,10 +121,13 @@ def light_camera(
     -------
     The camera, and the centres as it counts them, shape (N, 3).
     """
-    lower = (balls.centers - balls.radii[:, None]).min(axis=0)
-    upper = (balls.centers + balls.radii[:, None]).max(axis=0)
-    centers = balls.centers - 0.5 * (lower + upper)
-    reach = np.sqrt(np.square(centers).sum(axis=1)) + balls.radii
+    # By axis: whole rows of memory.
+    lower = [(at - balls.radii).min() for at in balls.centers.T]
+    upper = [(at + balls.radii).max() for at in balls.centers.T]
+    middle = 0.5 * np.add(lower, upper)
+    centers = np.stack([at - m for at, m in zip(balls.centers.T, middle, strict=True)])
+    x, y, z = np.square(centers)
+    reach = np.sqrt(x + y + z) + balls.radii
     radius = float(reach.max()) * BORDER
     camera = OrthographicCamera(
         radius * direction,
@@ -133,4 +136,4 @@ def light_camera(
         width=side,
         height=side,
     )
-    return camera, centers
+    return camera, centers.T

@@ -40,9 +40,9 @@ def depth_order(
     >>> depth_order(balls, [2.0, 1.0, 2.0])
     array([1, 2, 0])
     """
-    order = np.argsort(depth, kind="stable")
+    order = np.argsort(depth)
     ranked = depth[order]
-    if (ranked[1:] > ranked[:-1]).all():  # no ties: the same order, sooner
+    if (ranked[1:] > ranked[:-1]).all():  # no ties: the only order, found sooner
         return order
     x, y, z = balls.centers.T
     return np.lexsort((balls.densities, balls.radii, z, y, x, depth))

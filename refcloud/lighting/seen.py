@@ -83,6 +83,8 @@ class Seen:
         color = self.colours[:, -1]
         for s in range(self.colours.shape[1] - 1):
             color = color + self.colours[:, s]
+        if (self.clear == 1.0).all():  # no air
+            return color
         return color * self.clear[:, None] + self.air * (1.0 - self.clear)[:, None]
 
     def brightest(self) -> float:
@@ -120,9 +122,8 @@ def seen_by(
     dark = sum(1 for sun in lit.suns if not sun.irradiance.any())
     if dark:
         skipped.append(Skipped("light", "suns without light", dark, len(lit.suns)))
-    by_extinction = {
-        float(s): _eye_depths(lit, float(s), depth) for s in lit.medium.sigma_t_rgb
-    }
+    extinction = lit.medium.sigma_t_rgb.tolist()
+    by_extinction = {s: _eye_depths(lit, s, depth) for s in dict.fromkeys(extinction)}
     return Seen(
         lit,
         camera,
@@ -130,7 +131,7 @@ def seen_by(
         y,
         radius,
         scale,
-        np.stack([by_extinction[float(s)] for s in lit.medium.sigma_t_rgb]),
+        np.stack([by_extinction[s] for s in extinction]),
         ball_colours(lit, camera),
         clearness(haze, balls.centers, camera),
         np.zeros(3) if haze is None else haze.color,
@@ -172,9 +173,9 @@ def shading_of(
     if look.light_reach > 0.0 and shown.any():
         values = seen.colours.reshape(len(seen.colours), -1)
         field = light_field(balls, values, reach=look.light_reach)
-    middling = float(np.median(balls.radii)) if len(balls.radii) else 1.0
-    cell = look.erosion_cell * middling
+    cell = look.erosion_cell
     if look.erosion > 0.0 and shown.any():
+        cell *= float(np.median(balls.radii))
         places = balls.centers[shown]
         reach = balls.radii[shown][:, None] + RISE * cell
         lower, upper = (places - reach).min(axis=0), (places + reach).max(axis=0)

@@ -42,7 +42,7 @@ def light_share(
     look: Look,
     forward: float,
     most: float,
-    watch: Observer,
+    watch: Observer | None,
     carry: Carry | None = None,
 ) -> tuple[Array, list[Sweeps]]:
     """Give the share of one light that reaches each ball, unchecked.
@@ -58,7 +58,7 @@ def light_share(
     most
         Largest error of a share.
     watch
-        Called with (name, value).
+        Called with (name, value); None for nobody.
     carry
         How the light is carried; None for the fastest way in numpy.
 
@@ -85,7 +85,8 @@ def light_share(
     share = np.empty((len(view.radius), 3))
     sweeps: list[Sweeps] = []
     for key, tau in depths.items():
-        watch("order", view.order)
+        if watch:
+            watch("order", view.order)
         if found is None:
             in_turn = carry or carried_in_turn
             reached, plane = in_turn(view, tau, key[1], look, forward)
@@ -93,11 +94,14 @@ def light_share(
             result = carried(found, tau, key[1], look, forward, most)
             sweeps.append(Sweeps(len(result.changes), result.bound))
             reached = result.reached
-            plane = np.ones(view.side**2 + 1)  # one more for all outside
-            plane[found.pixel] = result.buffer
-            plane = plane[:-1]
-        buffer = framebuffer(view.side, view.side, color=np.ones(4))
-        buffer.pixels[..., :3] = plane.reshape(view.side, view.side, 1)
-        watch("buffer", buffer)
+            plane = None
+            if watch:
+                plane = np.ones(view.side**2 + 1)  # one more for all outside
+                plane[found.pixel] = result.buffer
+                plane = plane[:-1]
+        if watch and plane is not None:
+            buffer = framebuffer(view.side, view.side, color=np.ones(4))
+            buffer.pixels[..., :3] = plane.reshape(view.side, view.side, 1)
+            watch("buffer", buffer)
         share[:, channels[key]] = reached[:, None]
     return share, sweeps

@@ -98,7 +98,6 @@ def lit_by(
     -------
     As `sunward`.
     """
-    watch = observe or (lambda name, value: None)
     count = len(balls.radii)
     lights = [
         (f"sun {number}", sun.direction, sun.irradiance)
@@ -142,7 +141,7 @@ def lit_by(
             rules.forward if is_sun else rules.sky_forward,
             most,
             shrinks,
-            _labelled(watch, name),
+            _labelled(observe, name),
             carry,
         )
         carried.append(found)
@@ -178,9 +177,9 @@ def _savings(carried: list[Sized], count: int, worth: float) -> list[Skipped]:
     return rows
 
 
-def _labelled(watch: Observer, light: str) -> Observer:
+def _labelled(watch: Observer | None, light: str) -> Observer | None:
     """Let what is watched say which light it is of."""
-    return lambda name, value: watch(f"{light} {name}", value)
+    return watch and (lambda name, value: watch(f"{light} {name}", value))
 
 
 def worth_of_light(

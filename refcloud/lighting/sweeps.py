@@ -96,7 +96,7 @@ def carried(
     kappa = largest_gain(tau, albedo, look, forward)
 
     # 2. The first guess: every pixel's light meets the ball as if it were the mean.
-    reached = _read(found, T + g, None, None, len(tau))[0]
+    reached = _read(found, T, g, None, len(tau))[0]
     # 3. Sweep until the proved bound is small enough.
     target = max(most, ROUNDED)
     changes: list[float] = []
@@ -143,9 +143,11 @@ def largest_gain(tau: Array, albedo: float, look: Look, forward: float) -> float
 
 
 def _read(
-    found: Fragments, T: Floats, g: Floats | None, sent: Floats | None, count: int
+    found: Fragments, T: Floats, g: Floats, sent: Floats | None, count: int
 ) -> tuple[Array, Floats]:
     """Run c = T c + g sent over every pixel's list, and read the mean of each ball.
+
+    Without `sent` the pixel's own light is taken for the mean: c = (T + g) c.
 
     Returns
     -------
@@ -154,19 +156,22 @@ def _read(
     buffer = np.ones(found.pixel.shape, T.dtype)
     space = np.empty_like(buffer)
     together = T.ndim == 2
-    before = np.empty(len(T) if together else T.shape, T.dtype)  # found in the buffer
+    every = np.ones(T.shape[1:], T.dtype)
+    before = np.empty(len(T), T.dtype)  # found in the buffer
     begin = 0
     for n in found.counts:
-        end = begin + n
-        here = buffer[:n]
+        here, room = buffer[:n], space[:n]
+        now = slice(begin, begin + n)
         if together:
-            np.vecdot(here, found.read[begin:end], out=before[begin:end])
+            np.matmul(np.multiply(here, found.read[now], out=room), every, before[now])
         else:
-            before[begin:end] = here
-        here *= T[begin:end]
-        if g is not None and sent is not None:
-            here += np.multiply(g[begin:end], sent[begin:end], out=space[:n])
-        begin = end
+            before[now] = here
+        if sent is None:
+            here *= np.add(T[now], g[now], out=room)
+        else:
+            here *= T[now]
+            here += np.multiply(g[now], sent[now], out=room)
+        begin += n
     if not together:
         before *= found.read
     return np.bincount(found.ball, before, minlength=count) / found.total, buffer

@@ -8,7 +8,7 @@ from typing import NoReturn
 import numpy as np
 
 from refcloud.camera import AnyCamera
-from refcloud.cloudmap import VoxelGrid, cell_size
+from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.march.balls import exact_balls
 from refcloud.march.cells import lattice
@@ -20,6 +20,7 @@ from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 from refcloud.transport import LightVolume
+from refcloud.transport.cut_out import thickest_voxel
 
 # Optical depth of one voxel above which the answer of `tolerance=0` itself is off by
 # more than a ten-thousandth of white: shadows are sharper than the Gauss points.
@@ -96,6 +97,7 @@ def marched(
         )
     refuse_unbounded(cloud, medium)
     _refuse_coarse(cloud, medium, origins)
+    suns, dark = without_dark(suns, medium)
     task = Task(
         cloud,
         lattice(cloud),
@@ -118,7 +120,7 @@ def marched(
     seen, through = completed(
         radiance, column, medium, mixing, task.ambient, background
     )
-    return Marched(seen, through, rows, notes + steep_note(cloud, medium))
+    return Marched(seen, through, dark + rows, notes + steep_note(cloud, medium))
 
 
 def _balls_marched(
@@ -141,6 +143,23 @@ def _balls_marched(
     found = exact_balls(balls, origins, directions, suns, lit, medium, mixing)
     light = np.zeros(3) if ambient is None else ambient
     return Marched(*completed(*found, medium, mixing, light, background))
+
+
+def without_dark(
+    suns: tuple[Sun, ...], medium: Medium
+) -> tuple[tuple[Sun, ...], tuple[Skipped, ...]]:
+    """Leave out suns that add nothing in any channel, and report them.
+
+    Parameters
+    ----------
+    suns, medium
+        The lights, and the albedo that they count with.
+    """
+    lit = tuple(sun for sun in suns if (sun.irradiance * medium.albedo_rgb).any())
+    dark = len(suns) - len(lit)
+    if not dark:
+        return suns, ()
+    return lit, (Skipped("light", "suns without light", dark, len(suns)),)
 
 
 def refuse_unbounded(grid: VoxelGrid, medium: Medium) -> None:
@@ -176,15 +195,9 @@ def _refuse_depth() -> NoReturn:
     raise ValueError(complaint("sigma_t", expected, "more", "lower sigma_t"))
 
 
-def steepest(grid: VoxelGrid, medium: Medium) -> float:
-    """Give the largest optical depth of one voxel, along its longest edge."""
-    densest = float(grid.density.max()) * float(cell_size(grid).max())
-    return float(np.max(medium.sigma_t)) * densest
-
-
 def steep_note(grid: VoxelGrid, medium: Medium) -> tuple[str, ...]:
     """Note a cloud map whose voxels are too coarse for its optical depth."""
-    tau = steepest(grid, medium)
+    tau = thickest_voxel(grid, medium)
     if tau <= STEEPEST:
         return ()
     return (

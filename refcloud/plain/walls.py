@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 from refcloud.plain.box import WALLS, box_lines, box_triangles
 from refcloud.plain.camera import Camera, Point, axes, between, cross, dot
-from refcloud.plain.framebuffer import Rules, State
-from refcloud.plain.raster import Buffer, blend
-from refcloud.plain.triangles import Mesh, draw_triangles
+from refcloud.plain.framebuffer import Rules, State, draw_fragments
+from refcloud.plain.raster import Buffer
+from refcloud.plain.triangles import Mesh, depth_in_buffer, draw_triangles
 from refcloud.plain.window import (
     SUBPIXEL,
     Place,
@@ -79,10 +79,12 @@ def line_pixels(
     return line_between(a, b, width, height, thickness)
 
 
-def cut_line(camera: Camera, a: Point, b: Point, near: float) -> list[Point]:
-    """Cut a line by the near plane and by four far beside the window."""
-    for plane in range(5):
-        in_a, in_b = (inside(camera, place, plane, near) for place in (a, b))
+def cut_line(
+    camera: Camera, a: Point, b: Point, near: float, far: float | None
+) -> list[Point]:
+    """Cut a line by the near plane, four far beside the window, and the far one."""
+    for plane in range(6):
+        in_a, in_b = (inside(camera, place, plane, near, far) for place in (a, b))
         if in_a < 0.0 and in_b < 0.0:
             return []
         if in_a < 0.0:
@@ -92,28 +94,38 @@ def cut_line(camera: Camera, a: Point, b: Point, near: float) -> list[Point]:
     return [a, b]
 
 
-def paint(buffer: Buffer, pixels: Sequence[Pixel], color: Sequence[float]) -> None:
-    """Blend a colour over pixels."""
-    for row, column in pixels:
-        pixel = buffer[row][column]
-        pixel[:] = blend(color, pixel, "SRC_ALPHA", "ONE_MINUS_SRC_ALPHA")
+def depth_at(a: Place, b: Place, depth: Sequence[float], pixel: Pixel) -> float:
+    """Give the depth of a line where it crosses a pixel's column, or row."""
+    x, y = (n * SUBPIXEL + SUBPIXEL // 2 for n in pixel[::-1])
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    share = (x - a[0]) / dx if abs(dx) >= abs(dy) else (y - a[1]) / dy
+    return min(max(depth[0] + share * (depth[1] - depth[0]), 0.0), 1.0)
 
 
 def draw_lines(
     buffer: Buffer,
+    depths: list[list[float]],
     camera: Camera,
     lines: Sequence[Sequence[Point]],
     color: Sequence[float],
     thickness: int,
     near: float,
+    far: float | None,
+    state: State,
 ) -> None:
-    """Cut, place and paint each line."""
+    """Cut, place and draw one line and one pixel after the other."""
+    size = camera.width, camera.height
     for start, end in lines:
-        left = cut_line(camera, to_camera(camera, start), to_camera(camera, end), near)
-        if left:
-            a, b = (in_window(camera, place, near) for place in left)
-            size = camera.width, camera.height
-            paint(buffer, line_between(a, b, *size, thickness), color)
+        places = to_camera(camera, start), to_camera(camera, end)
+        left = cut_line(camera, *places, near, far)
+        if not left:
+            continue
+        a, b = (in_window(camera, place, near) for place in left)
+        at_ends = [depth_in_buffer(camera, place[2], near, far) for place in left]
+        for pixel in line_between(a, b, *size, thickness):
+            depth = depth_at(a, b, at_ends, pixel)
+            fragment = *pixel, depth, color
+            draw_fragments(buffer, depths, [fragment], state, "RGBA64F")
 
 
 def faces_away(camera: Camera, corners: Sequence[Point]) -> bool:
@@ -154,4 +166,4 @@ def draw_box(
         ]
         if all(walls) == (part == "behind"):
             lines.append([a, b])
-    draw_lines(buffer, camera, lines, line_color, thickness, near)
+    draw_lines(buffer, depths, camera, lines, line_color, thickness, near, None, OVER)

@@ -1,13 +1,14 @@
 """The framebuffer, literally: clear, draw, blend, splat, lines, walls, read back."""
 
 from refcloud.raster.blending import blend
+from refcloud.raster.diamonds import line_pixels
 from refcloud.raster.factors import Blending
 from refcloud.raster.footprint import Patch, footprint, patch, transmittance
 from refcloud.raster.formats import stored
 from refcloud.raster.fragments import clear, draw_fragments
 from refcloud.raster.framebuffer import Framebuffer, framebuffer
 from refcloud.raster.layers import seen_through_layers
-from refcloud.raster.lines import draw_lines, line_pixels
+from refcloud.raster.lines import draw_lines
 from refcloud.raster.lookup import sample
 from refcloud.raster.meshes import Mesh, dome_mesh, plane_mesh, sphere_mesh
 from refcloud.raster.mipmaps import mip_levels

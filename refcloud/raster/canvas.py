@@ -66,10 +66,11 @@ class Canvas:
                     shown = shown + passed * self.tiles[channel][where]
                 self.tiles[channel][where] = shown
         if not self.over:
-            shares = [len(channels) / 3.0 for channels in groups]
-            alpha = sum(
-                share * (1.0 - clear[:, group]) for group, share in enumerate(shares)
-            )
+            alpha = 1.0 - clear[:, 0]
+            if len(groups) > 1:  # the mean over the channels
+                alpha *= len(groups[0]) / 3.0
+                for group, channels in enumerate(groups[1:], 1):
+                    alpha += len(channels) / 3.0 * (1.0 - clear[:, group])
             self.tiles[3][where] = np.reshape(alpha, square)
 
     def pixels(self) -> Array:

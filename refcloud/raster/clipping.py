@@ -1,4 +1,4 @@
-"""Triangles cut by planes, all at once.
+"""Triangles and lines cut by planes, all at once.
 
 A triangle with one corner outside leaves a quad, that is two triangles, one with two
 outside a smaller triangle. What is cut gets new corners at the end of the list, with
@@ -35,15 +35,26 @@ def clip(
     Corners, those of cuts behind the others; faces, shape (3, T'), in the order of the
     triangles that they are parts of; and which triangle that is, shape (T',).
 
-    Source: Sutherland and Hodgman's way to cut polygons; OpenGL 4.6, section 13.7.
+    Source: Cohen and Sutherland's outcodes, Sutherland and Hodgman's way to cut
+    polygons; OpenGL 4.6, section 13.7.
     """
-    source = np.arange(faces.shape[1])
-    for a, b, c, d in planes:
-        inside = a * corners[0] + b * corners[1] + c * corners[2] + d
-        outside = inside < 0.0
-        if not outside.any():
+    # A bit for each plane that a corner lies outside of tells, of most triangles, that
+    # nothing is cut: no bit is set, or one is set at all three corners.
+    code = np.zeros(corners.shape[1], np.uint8)
+    for number, plane in enumerate(planes):
+        code |= (_inside(corners, plane) < 0.0).view(np.uint8) << np.uint8(number)
+    first, second, third = code[faces]
+    touched = (first | second | third) > 0
+    if not touched.any():
+        return corners, faces, np.arange(faces.shape[1])
+    whole = np.flatnonzero(~touched)
+    source = np.flatnonzero(touched & (first & second & third == 0))
+    left, faces = faces[:, whole], faces[:, source]
+    for plane in planes:
+        inside = _inside(corners, plane)
+        out = (inside < 0.0)[faces]  # (3, T)
+        if not out.any():
             continue
-        out = outside[faces]  # (3, T)
         count = out.sum(axis=0)
         parts = [(faces[:, count == 0], source[count == 0])]
         for many in (1, 2):
@@ -72,6 +83,42 @@ def clip(
                 parts.append((np.stack([new[0], third, new[1]]), which))
         faces = np.concatenate([part for part, _ in parts], axis=1)
         source = np.concatenate([which for _, which in parts])
-        order = np.argsort(source, kind="stable")
-        faces, source = faces[:, order], source[order]
-    return corners, faces, source
+    faces = np.concatenate([left, faces], axis=1)
+    source = np.concatenate([whole, source])
+    order = np.argsort(source, kind="stable")
+    return corners, faces[:, order], source[order]
+
+
+def cut_lines(ends: Array, planes: Array) -> Array:
+    """Cut lines by planes, one plane after the other.
+
+    Parameters
+    ----------
+    ends
+        Right, up and depth of both ends, shape (N, 2, 3).
+    planes
+        Shape (P, 4), as `clip`.
+
+    Returns
+    -------
+    The ends of what is left, shape (N', 2, 3), in the lines' order.
+    """
+    for plane in planes:
+        inside = _inside(np.moveaxis(ends, -1, 0), plane)  # (N, 2)
+        kept = (inside >= 0.0).any(axis=1)
+        ends, inside = ends[kept], inside[kept]
+        which, outer = np.nonzero(inside < 0.0)
+        if not which.size:
+            continue
+        # One end lies inside: the new one lies between, seen from there.
+        start, stop = ends[which, 1 - outer], ends[which, outer]
+        within, beyond = inside[which, 1 - outer], inside[which, outer]
+        share = within / (within - beyond)
+        ends[which, outer] = start + share[:, None] * (stop - start)
+    return ends
+
+
+def _inside(corners: Array, plane: Array) -> Array:
+    """Tell how far inside of a plane corners, shape (3 or more, ...), lie."""
+    a, b, c, d = plane
+    return a * corners[0] + b * corners[1] + c * corners[2] + d

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import numpy as np
@@ -76,7 +77,7 @@ def sample(
             texture, along_x.reshape(-1, k).T, along_y.reshape(-1, k).T
         )
     found = looked_up(texture, transformed(texture, columns), levels)
-    return found.T.reshape(*leading, len(found))
+    return found.reshape(*leading, found.shape[1])
 
 
 def transformed(texture: Texture, coords: Array, way: bool = False) -> Array:
@@ -143,7 +144,7 @@ def looked_up(
 
     Returns
     -------
-    Shape (C, n).
+    Shape (n, C).
     """
     mag, (minify, *mipmap) = texture.mag_filter, texture.min_filter.split("_MIPMAP_")
     between = mipmap[0] if mipmap else None
@@ -157,17 +158,18 @@ def looked_up(
     lower = np.ceil(held + 0.5) - 1.0 if between == "NEAREST" else np.floor(held)
     share = held - lower if between == "LINEAR" else np.zeros_like(held)
     # 3. All of one level at a time.
-    found = np.empty((texture.texels.shape[-1], len(levels)), kind)
+    found = np.empty((len(levels), texture.texels.shape[-1]), kind)
     large = np.flatnonzero(~smaller)
-    found[:, large] = at_level(texture, 0, mag, coords[:, large], kind)
+    found[large] = at_level(texture, 0, mag, coords[:, large], kind)
     for level in np.unique(lower[smaller]).astype(int):
         here = np.flatnonzero(smaller & (lower == level))
-        found[:, here] = at_level(texture, level, minify, coords[:, here], kind)
+        found[here] = at_level(texture, level, minify, coords[:, here], kind)
         here = here[share[here] > 0.0]
         if here.size:
             smaller_one = at_level(texture, level + 1, minify, coords[:, here], kind)
-            mixed = found[:, here]
-            found[:, here] = mixed + share[here].astype(kind) * (smaller_one - mixed)
+            part = share[here].astype(kind)[:, None]
+            mixed = found[here]
+            found[here] = mixed + part * (smaller_one - mixed)
     return found
 
 
@@ -191,38 +193,41 @@ def at_level(
 
     Returns
     -------
-    Shape (C, n).
+    Shape (n, C).
     """
     table = texture.tables[kind][level]
-    flat = table.reshape(table.shape[0], -1)
+    channels = table.shape[-1]
+    texels = table.reshape(-1, channels)
     # 1. Into [0, 1], then to texels; the border makes up for one texel beyond.
     place, strides, shares = 0, [], []
     for a, wrap in enumerate(texture.wraps):
-        size, stride = table.shape[-1 - a], int(np.prod(table.shape[table.ndim - a :]))
+        size, stride = table.shape[-2 - a], math.prod(table.shape[-1 - a : -1])
         x = within_one(coords[a], wrap)
         x *= size - 2
         x += 1.0 if filter == "NEAREST" else 0.5
         whole = np.floor(x)
         x -= whole
-        shares.append(x.astype(kind, copy=False))
         strides.append(stride)
+        if filter == "LINEAR":  # one for each channel: they are mixed side by side
+            spread = np.repeat(x.astype(kind, copy=False), channels)
+            shares.append(spread.reshape(-1, channels))
         whole *= stride
         place = whole + place
     index = np.asarray(place).astype(np.intp)
     # 2. Mix the corners, first along s, then along t, then along r.
     if filter == "NEAREST":
-        return flat.take(index, axis=1)
-    return _mixed(flat, index, strides, shares)
+        return texels.take(index, axis=0)
+    return _mixed(texels, index, strides, shares)
 
 
 def _mixed(
-    flat: Array, index: NDArray[np.intp], strides: list[int], shares: list[Array]
+    texels: Array, index: NDArray[np.intp], strides: list[int], shares: list[Array]
 ) -> Array:
     """Interpolate between a texel and its neighbours along each axis."""
     if not strides:
-        return flat.take(index, axis=1)
-    low = _mixed(flat, index, strides[:-1], shares[:-1])
-    high = _mixed(flat, index + strides[-1], strides[:-1], shares[:-1])
+        return texels.take(index, axis=0)
+    low = _mixed(texels, index, strides[:-1], shares[:-1])
+    high = _mixed(texels, index + strides[-1], strides[:-1], shares[:-1])
     high -= low
     high *= shares[-1]
     high += low

@@ -22,6 +22,7 @@ from refcloud.raster.footprint import PER_AXIS, Law
 from refcloud.raster.tile_lists import SIDE, Discs, TileLists, Whole
 
 Floats = NDArray[np.floating]
+Moved = tuple[Array, Array] | None
 EXACT = 1e-13  # of an opacity: what rounding may change in float64
 
 
@@ -75,8 +76,26 @@ def cancelling(
         return 2.0 * float(np.finfo(dtype).eps) * terms * steep > most
 
 
+class Places:
+    """Places in a tile, as the second factors of the products.
+
+    Parameters
+    ----------
+    x, y
+        From the tile's middle, pixels, shape (S,).
+    dtype
+        Of the products.
+    """
+
+    def __init__(self, x: Array, y: Array, dtype: type) -> None:
+        self.x, self.y = x, y
+        one, square = np.ones_like(x), x * x + y * y
+        self.ahead = np.stack([one, x, y, square]).astype(dtype)
+        self.against = -np.stack([x, y, square, one]).astype(dtype)
+
+
 class Quadratics:
-    """The pairs of `lists` as four numbers each, and their products with places.
+    """The pairs of `lists` as rows of numbers, and their products with places.
 
     Parameters
     ----------
@@ -86,11 +105,11 @@ class Quadratics:
         What w is multiplied by, shape (N,): `taken` gives -strength w.
     form
         The footprint.
-    places
-        x and y of the S places from a tile's middle, pixels.
+    beside
+        Numbers of each ball that are looked up with it, shape (N, C).
     direct
-        Balls whose four numbers would cancel, shape (N,): for them p is computed from
-        each place's own distance to the centre.
+        Balls whose numbers would cancel, shape (N,): for them p is computed from each
+        place's own distance to the centre.
     dtype
         Of the products; the numbers themselves are formed in float64.
     """
@@ -101,75 +120,108 @@ class Quadratics:
         discs: Discs,
         strength: Array,
         form: Form,
-        places: tuple[Array, Array],
+        beside: Array,
         direct: NDArray[np.bool_] | None,
         dtype: type,
     ) -> None:
-        self.lists, self.discs, self.form, self.places = lists, discs, form, places
+        self.lists, self.discs, self.form, self.dtype = lists, discs, form, dtype
+        self.direct = direct if direct is not None and direct.any() else None
         # With v = scale p the strength and the leading factor are in already.
         self.scale = (strength * form.leading) ** (1.0 / (form.power + 1.0))
-        # One more pair, of p = 0, and one more ball stand for the empty slots.
-        self.ball = np.append(lists.ball, len(strength))
-        self.direct = None
-        if direct is not None and direct.any():
-            self.direct = np.append(direct, False)
-        x, y = places
-        self.basis = np.stack([np.ones_like(x), x, y, x * x + y * y]).astype(dtype)
-        self.against = -self.basis
 
         ball, inverse = lists.ball, (1.0 / discs.radius)[lists.ball]
-        tile = np.repeat(np.arange(len(lists.count)), lists.count)
-        cx = (discs.x[ball] - (lists.column[tile] + 0.5) * SIDE) * inverse
-        cy = (discs.y[ball] - (lists.row[tile] + 0.5) * SIDE) * inverse
+        column, row = (
+            np.repeat((at + 0.5) * SIDE, lists.count)
+            for at in (lists.column, lists.row)
+        )
+        cx = (discs.x[ball] - column) * inverse
+        cy = (discs.y[ball] - row) * inverse
         scale = self.scale[ball]
         first = scale * (1.0 - cx * cx - cy * cy)
-        self.four = np.zeros((len(ball) + 1, 4), dtype)
-        self.shifted = np.zeros(len(ball) + 1, dtype)  # the first, for p + shift
-        self.four[:-1, 0], self.shifted[:-1] = first, first + form.shift * scale
-        self.four[:-1, 1] = 2.0 * cx * (scale * inverse)
-        self.four[:-1, 2] = 2.0 * cy * (scale * inverse)
-        self.four[:-1, 3] = -scale * inverse * inverse
+        inverse *= scale
+        # A row for each pair, one more of zeros for the empty slots: the four numbers,
+        # the first again for p + shift, and what is looked up with them.
+        self.rows = np.zeros((len(ball) + 1, 5 + beside.shape[1]), dtype)
+        rows = self.rows[:-1]
+        rows[:, 0], rows[:, 4] = first, first + form.shift * scale
+        rows[:, 1] = 2.0 * cx * inverse
+        rows[:, 2] = 2.0 * cy * inverse
+        rows[:, 3] = -inverse * (1.0 / discs.radius)[ball]
+        rows[:, 5:] = np.asarray(beside, dtype).take(ball, axis=0)
 
     def taken(
-        self, pair: Whole, live: Whole, v: Floats, out: Floats, zero: Floats
-    ) -> None:
+        self,
+        pair: Whole,
+        tile: Whole,
+        places: Places,
+        v: Floats,
+        out: Floats,
+        zero: Floats,
+        moved: Moved = None,
+    ) -> Floats:
         """Give -strength w of some pairs at all places.
 
         Parameters
         ----------
         pair
-            Positions in the list of pairs, shape (slots, tiles).
-        live
-            The tiles, shape (tiles,).
+            Positions in the list of pairs, shape (slots, tiles); -1 for none.
+        tile
+            Numbers of the tiles, shape (tiles,).
+        places
+            In those tiles, S of them.
         v
             Work space, shape (slots, tiles, S).
         out
             The result, of that shape.
         zero
             Zeros of that shape: numpy compares two arrays faster than with a number.
+        moved
+            How far the places are moved in each tile, x and y of shape (tiles,).
+
+        Returns
+        -------
+        What is looked up with the balls, shape (slots, tiles, C).
         """
-        four = self.four.take(pair, axis=0)
-        np.matmul(four, self.basis, out=v)
-        four[..., 0] = self.shifted.take(pair)
-        np.matmul(four, self.against, out=out)
+        rows = self.rows.take(pair, axis=0, mode="wrap")
+        if moved is not None:
+            # The same quadratic in x + dx and y + dy has other coefficients.
+            dx, dy = (by.astype(self.dtype) for by in moved)
+            bx, by, c = rows[..., 1], rows[..., 2], rows[..., 3]
+            constant = bx * dx + by * dy + c * (dx * dx + dy * dy)
+            rows[..., 0] += constant
+            rows[..., 4] += constant
+            bx += 2.0 * dx * c
+            by += 2.0 * dy * c
+        np.matmul(rows[..., :4], places.ahead, out=v)
+        np.matmul(rows[..., 1:5], places.against, out=out)
         if self.direct is not None:
-            self._directly(pair, live, v, out)
+            self._directly(pair, tile, places, v, out, moved)
         np.maximum(v, zero, out=v)
         self.form.times_power(v, out)
+        return rows[..., 5:]
 
-    def _directly(self, pair: Whole, live: Whole, v: Floats, out: Floats) -> None:
+    def _directly(
+        self,
+        pair: Whole,
+        tile: Whole,
+        places: Places,
+        v: Floats,
+        out: Floats,
+        moved: Moved,
+    ) -> None:
         """Write the rows of chosen balls from each place's own distance."""
         assert self.direct is not None
-        which = self.ball.take(pair)
-        slots, tiles = np.nonzero(self.direct[which])
+        which = self.lists.ball.take(pair, mode="wrap")
+        slots, tiles = np.nonzero(self.direct[which] & (pair >= 0))
         if not len(slots):
             return
-        ball, tile = which[slots, tiles], live[tiles]
+        ball, tile = which[slots, tiles], tile[tiles]
+        aside = (0.0, 0.0) if moved is None else [by[tiles][:, None] for by in moved]
         # As `patch` has it, to the last bit: a rim at a depth of 1e30 shows every one.
-        square = np.zeros((len(ball), len(self.places[0])))
+        square = np.zeros((len(ball), len(places.x)))
         for center, middle, place in (
-            (self.discs.x, self.lists.column, self.places[0]),
-            (self.discs.y, self.lists.row, self.places[1]),
+            (self.discs.x, self.lists.column, places.x + aside[0]),
+            (self.discs.y, self.lists.row, places.y + aside[1]),
         ):
             gap = place + ((middle[tile] + 0.5) * SIDE)[:, None]
             gap -= center[ball][:, None]

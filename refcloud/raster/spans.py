@@ -46,18 +46,38 @@ class Spans:
     first: Indices
     count: Indices
 
+    def some(self, which: Indices | NDArray[np.bool_] | slice) -> Spans:
+        """Give some of them."""
+        numbers = (self.triangle, self.row, self.first, self.count)
+        return Spans(*(of_span[which] for of_span in numbers))
+
+    def parted(self) -> tuple[Spans, Spans]:
+        """Give those that share no pixel, in the pixels' order, and the others.
+
+        What has its pixels for itself may be drawn at any time. So it is drawn as the
+        pixels lie in memory, and nothing of it is ever sorted out pixel by pixel.
+        """
+        # 1. By row, then by column. Numpy sorts numbers of 16 bits digit by digit.
+        largest = max(int(k.max(initial=0)) for k in (self.first, self.row))
+        kind = np.min_scalar_type(largest)
+        order = np.lexsort([k.astype(kind) for k in (self.first, self.row)])
+        # 2. Columns of all rows on one line: a span stands alone if it begins after all
+        #    before it have ended, and ends before the next begins.
+        width = int((self.first + self.count).max(initial=0))
+        begin = (self.row * width + self.first)[order]
+        end = begin + self.count[order]
+        alone = np.ones(len(order), bool)
+        alone[1:] = begin[1:] >= np.maximum.accumulate(end)[:-1]
+        alone[:-1] &= end[:-1] <= begin[1:]
+        if alone.all():
+            return self.some(order), self.some(slice(0, 0))
+        shared = np.sort(order[~alone])
+        return self.some(order[alone]), self.some(shared)
+
     def batches(self, most: int) -> Iterator[Spans]:
         """Split them so that each part has at most so many pixels, or one span."""
-        ends = np.cumsum(self.count)
-        start = 0
-        while start < len(ends):
-            done = int(ends[start - 1]) if start else 0
-            stop = max(int(np.searchsorted(ends, done + most, "right")), start + 1)
-            part = slice(start, stop)
-            yield Spans(
-                self.triangle[part], self.row[part], self.first[part], self.count[part]
-            )
-            start = stop
+        for part in batches(self.count, most):
+            yield self.some(part)
 
     def pixels(self) -> tuple[Indices, Indices, Indices]:
         """Give triangle, row and column of every pixel, span after span."""
@@ -67,6 +87,29 @@ class Spans:
             for of_span in (self.triangle, self.row, self.first - begin)
         )
         return triangle, row, first + np.arange(len(row))
+
+
+def batches(counts: Indices, most: int) -> Iterator[slice]:
+    """Split a list so that the counts of each part add up to at most so many, or one.
+
+    Parameters
+    ----------
+    counts
+        At least 0 each, shape (n,).
+    most
+        The largest sum of a part of several.
+
+    Yields
+    ------
+    Slices of the list, one after the other.
+    """
+    ends = np.cumsum(counts)
+    start = 0
+    while start < len(ends):
+        done = int(ends[start - 1]) if start else 0
+        stop = max(int(np.searchsorted(ends, done + most, "right")), start + 1)
+        yield slice(start, stop)
+        start = stop
 
 
 @checked
@@ -136,25 +179,25 @@ def row_spans(x: Places, y: Places, rows: slice, columns: slice) -> Iterator[Spa
     top = np.maximum(-((HALF - y.min(axis=0)) // SUBPIXEL), rows.start)
     bottom = np.minimum(-((HALF - y.max(axis=0)) // SUBPIXEL), rows.stop)
     height = np.where(area_of(x, y) > 0, np.maximum(bottom - top, 0), 0)
-    ends = np.cumsum(height)
-    start = 0
-    while start < len(ends):
-        done = int(ends[start - 1]) if start else 0
-        stop = int(np.searchsorted(ends, done + ROWS_AT_ONCE, side="right"))
-        stop = max(stop, start + 1)
-        part = slice(start, stop)
-        triangle = np.repeat(np.arange(start, stop), height[part])
-        within = np.arange(len(triangle)) - (ends - height - done)[triangle]
+    before = np.cumsum(height) - height
+    for part in batches(height, ROWS_AT_ONCE):
+        triangle = np.repeat(np.arange(part.start, part.stop), height[part])
+        within = np.arange(len(triangle)) - (before - before[part.start])[triangle]
         row = top[triangle] + within
         low, high = _columns(x, y, triangle, row, columns)
         found = high > low
         yield Spans(triangle[found], row[found], low[found], high[found] - low[found])
-        start = stop
 
 
 def area_of(x: Places, y: Places) -> Indices:
     """Give twice the area of triangles, above 0 where they run clockwise on screen."""
     return (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
+
+
+def reaching(places: Places, part: slice) -> NDArray[np.bool_]:
+    """Tell of which triangles x or y, shape (3, T), reaches into columns or rows."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    return (high >= part.start * SUBPIXEL) & (low <= part.stop * SUBPIXEL)
 
 
 def _columns(

@@ -114,16 +114,17 @@ class Texture:
 
     @functools.cached_property
     def tables(self) -> dict[str, list[Array]]:
-        """Give the levels as they are looked up, channels first, by kind of float.
+        """Give the levels as they are looked up, by kind of float.
 
         Each has a border of one texel around, by `wrap`: a lookup of two neighbours
-        then needs no care at edges.
+        then needs no care at edges. A texel's channels lie side by side: they are
+        fetched in one piece.
         """
-        exact = [self._bordered(np.moveaxis(level, -1, 0)) for level in self.levels]
+        exact = [self._bordered(level) for level in self.levels]
         return {"f8": exact, "f4": [table.astype("f4") for table in exact]}
 
     def _bordered(self, level: Array) -> Array:
-        for axis, wrap in zip((-1, -2, -3), self.wraps, strict=False):
+        for axis, wrap in zip((-2, -3, -4), self.wraps, strict=False):
             width = [(0, 0)] * level.ndim
             width[axis] = 1, 1
             level = np.pad(level, width, BORDER[wrap])  # type: ignore[call-overload]

@@ -53,6 +53,8 @@ class TileLists:
         Where each tile's list begins in `ball`, and how many it has, shape (T,).
     ball
         Numbers of balls, shape (P,): tile after tile, near to far within one.
+    box
+        First and one past the last column, and row, of the tiles that were looked at.
     """
 
     row: Whole
@@ -60,6 +62,7 @@ class TileLists:
     first: Whole
     count: Whole
     ball: Whole
+    box: tuple[int, int, int, int]
 
     def chosen(self, which: Whole) -> TileLists:
         """Give the lists of some of the tiles."""
@@ -68,7 +71,12 @@ class TileLists:
         pair = np.arange(int(end[-1]) if len(end) else 0)
         pair += np.repeat(self.first[which] - (end - count), count)
         return TileLists(
-            self.row[which], self.column[which], end - count, count, self.ball[pair]
+            self.row[which],
+            self.column[which],
+            end - count,
+            count,
+            self.ball[pair],
+            self.box,
         )
 
 
@@ -181,28 +189,30 @@ def tile_lists(
     -------
     The lists.
     """
-    # 1. One pair for each tile of each ball's bounding square, ball after ball.
-    ball = np.repeat(np.arange(len(counts)), counts)
-    step = np.arange(len(ball)) - np.repeat(np.cumsum(counts) - counts, counts)
-    across = (ranges.right - ranges.left)[ball]
-    down = step // across
-    column = ranges.left[ball] + (step - down * across)
-    row = ranges.top[ball] + down
+    # 1. The rows of tiles of each ball, and on each the columns that its disc reaches:
+    #    those whose rectangle of pixels' centres the chord nearest to the middle meets.
+    high = np.where(counts > 0, ranges.bottom - ranges.top, 0)
+    ball = np.repeat(np.arange(len(counts)), high)
+    row = np.arange(len(ball)) - np.repeat(np.cumsum(high) - high - ranges.top, high)
+    x, y, radius = discs.x[ball], discs.y[ball], discs.radius[ball]
+    low = row * float(edge) + 0.5
+    gap = np.clip(y, low, low + (edge - 1.0)) - y
+    gap /= radius
+    half = np.sqrt(np.maximum(1.0 + ROOM - gap * gap, 0.0)) * radius
+    left, right = ranges.left[ball], ranges.right[ball]
+    first = np.ceil(np.clip((x - half - (edge - 0.5)) / edge, left, right))
+    stop = np.floor(np.clip((x + half - 0.5) / edge, left - 1, right - 1)) + 1.0
+    first = first.astype(np.intp)
+    count = np.maximum(stop.astype(np.intp) - first, 0)
 
-    # 2. Keep those where the pixel nearest to the centre lies inside the disc.
-    square = np.zeros(len(ball))
-    for place, tile in ((discs.x, column), (discs.y, row)):
-        at = place[ball]
-        low = tile * float(edge) + 0.5
-        gap = np.clip(at, low, low + (edge - 1.0)) - at
-        gap /= discs.radius[ball]
-        square += np.square(gap, out=gap)
-    kept = square < 1.0 + ROOM
-    ball, column, row = ball[kept], column[kept], row[kept]
+    # 2. One pair for each tile of these, ball after ball.
+    wide = box[1] - box[0]
+    shift = first - box[0] + (row - box[2]) * wide - (np.cumsum(count) - count)
+    tile = np.repeat(shift, count)
+    tile += np.arange(len(tile))
+    ball = np.repeat(ball, count)
 
     # 3. Sort by tile; a stable sort leaves the balls of a tile near to far.
-    wide = box[1] - box[0]
-    tile = (row - box[2]) * wide + (column - box[0])
     few = wide * (box[3] - box[2]) <= 1 << 16  # numpy counts short keys, in no time
     order = np.argsort(tile.astype(np.uint16) if few else tile, kind="stable")
     counted = np.bincount(tile, minlength=wide * (box[3] - box[2]))
@@ -214,4 +224,5 @@ def tile_lists(
         np.cumsum(count) - count,
         count,
         ball[order],
+        box,
     )

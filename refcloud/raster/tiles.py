@@ -18,21 +18,24 @@ bits whatever their number.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.raster.footprint import Law, Name
-from refcloud.raster.quadratics import FORMS, Floats, Quadratics
+from refcloud.raster.quadratics import FORMS, Floats, Moved, Places, Quadratics
 from refcloud.raster.tile_lists import SIDE, Discs, TileLists, Whole
 
-SAMPLES = 1 << 17  # composited at a time: about what the processor's cache holds
-# Of these, list slots of as many tiles as are at work; few of them at least, so that
-# complete tiles are soon noticed.
-LEAST_SLOTS, MOST_SLOTS = 8, 64
+CACHED = 1 << 20  # bytes composited at a time: about what the processor's cache holds
+# Of these, list slots of as many tiles as are at work; a few of them, so that complete
+# tiles are soon noticed, but more where that makes arrays too small to be worth a call.
+LEAST_SLOTS, MOST_SLOTS = 12, 16
+WORTH = 1 << 14
 PER_E = 1.0 / math.log(2.0)  # powers of 2 are the faster ones
 # Where w is not 0 it is above 1e-40: beyond this depth nothing passes there at all.
 DEEPEST = {np.float64: 1e300, np.float32: 1e37}
@@ -42,6 +45,14 @@ def pixel_places() -> tuple[Array, Array]:
     """Give x and y of a tile's pixels from its middle, row after row."""
     step = np.arange(0.5 - SIDE / 2, SIDE / 2)
     return np.tile(step, SIDE), np.repeat(step, SIDE)
+
+
+@functools.cache
+def zeros(dtype: type) -> Floats:
+    """Give as many zeros as are ever needed at a time, not to be written to."""
+    found = np.zeros(CACHED // np.dtype(dtype).itemsize, dtype)
+    found.flags.writeable = False
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,20 +75,8 @@ class Result:
     unseen: Whole
 
 
-def composite(
-    lists: TileLists,
-    discs: Discs,
-    tau: Array,
-    colours: Array,
-    places: tuple[Array, Array],
-    *,
-    name: Name = "chord",
-    law: Law = "beer",
-    dtype: type = np.float64,
-    least: float = 0.0,
-    direct: NDArray[np.bool_] | None = None,
-) -> Result:
-    """Composite Wyvill balls of one colour each, from the front, unchecked.
+class Compositor:
+    """Wyvill balls of one colour each, ready to be composited at any places, unchecked.
 
     Parameters
     ----------
@@ -87,93 +86,144 @@ def composite(
         Optical depth of each ball on its axis, shape (N,).
     colours
         What each ball shows where it is opaque, shape (N, C).
-    places
-        x and y of the S places from a tile's middle, pixels: `pixel_places`, or nodes.
     name, law
         As `footprint` and `transmittance`.
     dtype
         float64, or float32, which is twice as fast.
-    least
-        A tile through which no place lets more than this share pass is complete.
     direct
         Balls whose places are measured one by one, shape (N,): see `cancelling`.
-
-    Returns
-    -------
-    The result.
     """
-    beer = law == "beer"
-    deep = np.minimum(tau, DEEPEST[dtype])
-    strength = deep * PER_E if beer else -np.expm1(-tau)
-    footprints = Quadratics(lists, discs, strength, FORMS[name], places, direct, dtype)
-    # In rows of memory, whatever the order of `colours`: they are looked up by rows.
-    hue = np.zeros((len(tau) + 1, colours.shape[1]), dtype)
-    hue[:-1] = colours
 
-    count, channels, size = len(lists.count), colours.shape[1], len(places[0])
-    light = np.empty((count, channels, size), dtype)
-    clear = np.empty((count, size), dtype)
-    unseen = np.zeros(count, np.intp)
-    together = max(min(SAMPLES // (LEAST_SLOTS * size), count), 1)
-    longest = min(int(lists.count.max(initial=0)), MOST_SLOTS)
-    room = min(SAMPLES, longest * together * size) + together * size
-    space, zeros = np.empty((2, room), dtype), np.zeros(room, dtype)
-    ranked = np.argsort(-lists.count, kind="stable")  # lists of like length together
-    for begin in range(0, count, together):
-        live = ranked[begin : begin + together]
-        added = np.zeros((len(live), channels, size), dtype)
-        through = np.ones((len(live), size), dtype)
-        total = np.zeros((len(live), size))  # its log2, in float64: no end, no drift
-        slot = 0
-        while n := len(live):
-            # 1. The next balls of each tile; past a list's end, the empty pair.
-            left = lists.count[live] - slot
-            slots = min(SAMPLES // (n * size), MOST_SLOTS, int(left.max()))
-            k = slot + np.arange(slots)[:, None]
-            listed = k < lists.count[live]
-            pair = np.where(listed, lists.first[live] + k, len(lists.ball))
+    def __init__(
+        self,
+        lists: TileLists,
+        discs: Discs,
+        tau: Array,
+        colours: Array,
+        *,
+        name: Name = "chord",
+        law: Law = "beer",
+        dtype: type = np.float64,
+        direct: NDArray[np.bool_] | None = None,
+    ) -> None:
+        self.lists, self.dtype, self.channels = lists, dtype, colours.shape[1]
+        self.beer = law == "beer"
+        deep = np.minimum(tau, DEEPEST[dtype])
+        strength = deep * PER_E if self.beer else -np.expm1(-tau)
+        self.footprints = Quadratics(
+            lists, discs, strength, FORMS[name], colours, direct, dtype
+        )
+        # Room to work in, the same one for all tiles; what is not used costs nothing.
+        self.samples = CACHED // np.dtype(dtype).itemsize
+        self.space = np.empty((2, 2 * self.samples), dtype)
+        self.zeros = zeros(dtype)
 
-            # 2. What each takes of the light at each place: log2 T, or T - 1.
-            shape = slots, n, size
-            every = slots * n * size
-            F = space[0, : every + n * size].reshape(slots + 1, n, size)
-            taken, v = F[1:], space[1, :every].reshape(shape)
-            footprints.taken(pair, live, v, taken, zeros[:every].reshape(shape))
+    def at(
+        self,
+        places: tuple[Array, Array],
+        least: float,
+        which: Whole | None = None,
+        moved: Moved = None,
+    ) -> Result:
+        """Composite tiles from the front.
 
-            # 3. F, counted from this slot on: what passes the balls before.
-            F[0] = 1.0
-            if beer:
-                for j in range(1, slots):
-                    taken[j] += taken[j - 1]
-                total += taken[-1]
-                np.exp2(taken, out=taken)
-            else:
-                taken += zeros.dtype.type(1.0)
-                for j in range(1, slots):
-                    taken[j] *= taken[j - 1]
+        Parameters
+        ----------
+        places
+            x and y of the S places from a tile's middle, pixels: `pixel_places`, or
+            some of them, or nodes.
+        least
+            A tile through which no place lets more than this share pass is complete.
+        which
+            Numbers of the tiles; None for all.
+        moved
+            How far the places are moved in each of these tiles, x and y of shape (T,).
 
-            # 4. Colours, by parts; an empty slot is black.
-            shown = hue.take(footprints.ball.take(pair), axis=0).transpose(1, 2, 0)
-            change = np.empty((n, channels, slots + 1), dtype)
-            change[..., 0], change[..., -1] = shown[..., 0], -shown[..., -1]
-            np.subtract(shown[..., 1:], shown[..., :-1], out=change[..., 1:-1])
-            more = np.matmul(change, F.transpose(1, 0, 2))
-            more *= through[:, None]
-            added += more
-            if beer:
-                through[...] = np.exp2(total)
-            else:
-                through *= taken[-1]
+        Returns
+        -------
+        The result for these tiles.
+        """
+        tiles = np.arange(len(self.lists.count)) if which is None else which
+        counts, size = self.lists.count[tiles], len(places[0])
+        light = np.empty((len(tiles), self.channels, size), self.dtype)
+        clear = np.empty((len(tiles), size), self.dtype)
+        unseen = np.zeros(len(tiles), np.intp)
+        together = max(min(self.samples // (LEAST_SLOTS * size), len(tiles)), 1)
+        at = Places(*places, self.dtype)
+        ranked = np.argsort(-counts, kind="stable")  # lists of like length together
+        for begin in range(0, len(tiles), together):
+            live = ranked[begin : begin + together]
+            added = np.zeros((len(live), self.channels, size), self.dtype)
+            through = np.ones((len(live), size), self.dtype)
+            total = np.zeros((len(live), size))  # its log2, in float64: no drift
+            slot = 0
+            while n := len(live):
+                # 1. The next balls of each tile; past a list's end, none.
+                left = counts[live] - slot
+                few = max(MOST_SLOTS, min(WORTH // (n * size), 4 * MOST_SLOTS))
+                slots = min(self.samples // (n * size), few, int(left.max()))
+                k = np.arange(slots)[:, None]
+                pair = np.where(k < left, self.lists.first[tiles[live]] + slot + k, -1)
 
-            # 5. Lists at their end, and tiles that nothing passes, are complete.
-            slot += slots
-            left -= slots
-            done = (left <= 0) | (through.max(axis=1) <= least)
-            if 4 * np.count_nonzero(done) >= n:
-                unseen[live[done]] = np.maximum(left[done], 0)
-                light[live[done]] = added[done]
-                clear[live[done]] = through[done]
-                kept = ~done
-                live, added, through = live[kept], added[kept], through[kept]
-                total = total[kept]
-    return Result(light, clear, unseen)
+                # 2. What each takes of the light at each place: log2 T, or T - 1.
+                shape, every = (slots, n, size), slots * n * size
+                F = self.space[0, : every + n * size].reshape(slots + 1, n, size)
+                taken, v = F[1:], self.space[1, :every].reshape(shape)
+                zero = self.zeros[:every].reshape(shape)
+                aside = None if moved is None else (moved[0][live], moved[1][live])
+                shown = self.footprints.taken(
+                    pair, tiles[live], at, v, taken, zero, aside
+                )
+
+                # 3. F, counted from this slot on: what passes the balls before.
+                F[0] = 1.0
+                if self.beer:
+                    for j in range(1, slots):
+                        taken[j] += taken[j - 1]
+                    total += taken[-1]
+                    np.exp2(taken, out=taken)
+                else:
+                    taken += taken.dtype.type(1.0)
+                    for j in range(1, slots):
+                        taken[j] *= taken[j - 1]
+
+                # 4. Colours, by parts; an empty slot is black.
+                shown = shown.transpose(1, 2, 0)
+                change = np.empty((n, self.channels, slots + 1), self.dtype)
+                change[..., 0], change[..., -1] = shown[..., 0], -shown[..., -1]
+                np.subtract(shown[..., 1:], shown[..., :-1], out=change[..., 1:-1])
+                more = np.matmul(change, F.transpose(1, 0, 2))
+                more *= through[:, None]
+                added += more
+                if self.beer:
+                    through[...] = total
+                    np.exp2(through, out=through)
+                else:
+                    through *= taken[-1]
+
+                # 5. Lists at their end, and tiles that nothing passes, are complete.
+                slot += slots
+                left -= slots
+                done = (left <= 0) | (through.max(axis=1) <= least)
+                if 4 * np.count_nonzero(done) >= n:
+                    unseen[live[done]] = np.maximum(left[done], 0)
+                    light[live[done]] = added[done]
+                    clear[live[done]] = through[done]
+                    kept = ~done
+                    live, added, through = live[kept], added[kept], through[kept]
+                    total = total[kept]
+        return Result(light, clear, unseen)
+
+
+def composite(
+    lists: TileLists,
+    discs: Discs,
+    tau: Array,
+    colours: Array,
+    places: tuple[Array, Array],
+    *,
+    least: float = 0.0,
+    **how: Any,
+) -> Result:
+    """Composite all tiles of `lists` at some places: `Compositor` in one call."""
+    return Compositor(lists, discs, tau, colours, **how).at(places, least)

@@ -6,6 +6,7 @@ planes, project and snap, cull, find row spans, sort out what shows, shade and b
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
@@ -20,22 +21,23 @@ from refcloud.raster.fragments import PLAIN, scissored
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer, Rgba
 from refcloud.raster.lookup import level_of_detail, looked_up, transformed
 from refcloud.raster.meshes import Mesh
-from refcloud.raster.spans import area_of, row_spans
+from refcloud.raster.spans import area_of, reaching, row_spans
 from refcloud.raster.store import State, flattened, unflattened, write
 from refcloud.raster.texture import Texture
 from refcloud.raster.varying import Fragments, Run, View, planes_through
-from refcloud.raster.visible import layers, pieces
+from refcloud.raster.visible import layers, pieces, places
 from refcloud.raster.window import (
     NEAR,
+    Far,
     Near,
     planes_of,
+    refuse_depths,
     refuse_other_size,
     snapped,
     to_camera,
 )
 
 Cull = Literal["FRONT", "BACK", "FRONT_AND_BACK"]
-Far = Annotated[float, Range(1e-100, 1e100, "scene units")]
 AT_ONCE = 1 << 17  # fragments that are sorted out together
 SHADED_AT_ONCE = 1 << 15  # their numbers then stay in the cache
 # Largest error of texels mixed in float32, of the largest among them: each of up to
@@ -80,10 +82,13 @@ class Textured:
         texels = looked_up(texture, coords, levels, kind)
         color = np.empty((CHANNELS, coords.shape[1]))
         for channel, share in enumerate(self.color):
-            there = channel < len(texels)
-            np.multiply(
-                texels[channel] if there else channel == 3, share, color[channel]
-            )
+            there = channel < texels.shape[1]
+            if not there:
+                color[channel] = share * (channel == 3)
+            elif share == 1.0:
+                color[channel] = texels[:, channel]
+            else:
+                np.multiply(texels[:, channel], share, color[channel])
         return color.T
 
 
@@ -160,21 +165,24 @@ def draw_triangles(
     height, width = buffer.pixels.shape[:2]
     box = scissored(state, slice(0, height), slice(0, width), height, width)
     how = {"cull": cull, "near": near, "far": far, "tolerance": tolerance}
+    states = state, dataclasses.replace(state, depth_func=None)
     store, scratch = flattened(buffer), np.empty(height * width, np.int64)
     for fragments in covered(camera, mesh, box, **how):
-        pixel = (fragments.run.spans.row * width).take(fragments.span)
-        pixel += fragments.column
-        for layer, left in layers(store, state, pixel, fragments, scratch):
+        pixel = fragments.pixel(width)
+        depths, alone = (lambda f=fragments: f.depth), fragments.alone
+        sorted_out = layers(store, states, pixel, depths, scratch, alone=alone)
+        for layer, left in sorted_out:
             for part in pieces(layer, SHADED_AT_ONCE):
                 some = fragments.of(part)
                 depth = None if left.depth_func is None else some.depth
-                write(store, (pixel[part],), _shaded(shade, some), depth, left)
+                where = places(pixel, part)
+                write(store, (where,), _shaded(shade, some), depth, left)
     unflattened(store, buffer)
 
 
 def _shaded(shade: Any, fragments: Fragments) -> Array:
     """Ask for colours, and refuse what is none."""
-    n = len(fragments.row)
+    n = len(fragments.column)
     if not callable(shade):
         return np.broadcast_to(shade, (n, CHANNELS))
     if isinstance(shade, Textured):
@@ -186,13 +194,7 @@ def _refuse_unfit(
     camera: AnyCamera, mesh: Mesh, shade: Any, state: State, near: float, far: Any
 ) -> None:
     """Refuse arguments that do not fit each other."""
-    if far is not None and far <= near:
-        got = f"{far:g}, near {near:g}"
-        raise ValueError(complaint("far", "a depth beyond near", got))
-    parallel = not isinstance(camera, Camera)
-    if parallel and far is None and state.depth_func is not None:
-        expected = "a depth for the depth test of parallel rays"
-        raise ValueError(complaint("far", expected, "None"))
+    refuse_depths(camera, near, far, state.depth_func)
     if isinstance(shade, Textured):
         needed = shade.first + shade.texture.dimension
         if needed > mesh.attributes.shape[1]:
@@ -222,7 +224,8 @@ def covered(
 
     Yields
     ------
-    Fragments in drawing order, about AT_ONCE at a time.
+    Fragments, first those that have their pixels for themselves, then about AT_ONCE at
+    a time in drawing order.
     """
     # 1. Into the camera's frame, and cut.
     corners = np.concatenate([to_camera(camera, mesh.points), mesh.attributes], axis=1)
@@ -234,10 +237,10 @@ def covered(
     x, y = place[faces, 0], place[faces, 1]
 
     # 3. Which side is seen: on the screen, whose y runs down, fronts run clockwise
-    #    backward. Corners are then taken clockwise.
+    #    backward. Corners are then taken clockwise. What misses the box is left out.
     area = area_of(x, y)
     front = area < 0
-    kept = area != 0
+    kept = (area != 0) & reaching(x, box[1]) & reaching(y, box[0])
     if cull is not None:
         kept &= {"FRONT": ~front, "BACK": front}.get(cull, False)
     faces, source, front = faces[:, kept], source[kept], front[kept]
@@ -254,5 +257,10 @@ def covered(
     linear = planes_through(x, y, values[:, faces])
     view = View(pinhole, near, far)
     for spans in row_spans(x, y, *box):
-        for part in spans.batches(AT_ONCE):
-            yield Run(part, linear, source, front, view).fragments(tolerance)
+        alone, others = spans.parted()
+        for part in alone.batches(SHADED_AT_ONCE):
+            run = Run(part, linear, source, front, view)
+            yield run.fragments(tolerance, alone=True)
+        for part in others.batches(AT_ONCE):
+            run = Run(part, linear, source, front, view)
+            yield run.fragments(tolerance, alone=False)

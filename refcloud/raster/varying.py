@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,12 +34,15 @@ class Planes:
         the attributes, divided by depth for a pinhole.
     along_x, along_y
         Change from pixel to pixel, shape (1 + K, T).
+    least
+        The least 1 / depth or depth of all corners, below which no rounding must lead.
     """
 
     origin: Places
     value: Array
     along_x: Array
     along_y: Array
+    least: float
 
 
 def planes_through(x: Places, y: Places, values: Array) -> Planes:
@@ -61,7 +65,8 @@ def planes_through(x: Places, y: Places, values: Array) -> Planes:
     rise1, rise2 = values[:, 1] - first, values[:, 2] - first
     along_x = (rise1 * y2 - rise2 * y1) * scale
     along_y = (rise2 * x1 - rise1 * x2) * scale
-    return Planes(np.stack([x[0], y[0]]), first, along_x, along_y)
+    least = float(values[0].min(initial=np.inf))
+    return Planes(np.stack([x[0], y[0]]), first, along_x, along_y, least)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +87,8 @@ class View:
             depth = np.zeros_like(first)  # never tested
         else:
             depth = (first - near) * (1.0 / (far - near))
-        return np.clip(depth, 0.0, 1.0, out=depth)
+        np.maximum(depth, 0.0, out=depth)
+        return np.minimum(depth, 1.0, out=depth)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,18 +132,17 @@ class Run:
         """Give their change from column to column, shape (1 + K, R)."""
         return self.planes.along_x[:, self.spans.triangle]
 
-    @functools.cached_property
-    def least(self) -> float:
-        """Give the least 1 / depth or depth, below which no rounding must lead."""
-        return float(self.planes.value[0].min(initial=1.0))
+    def each(self, of_span: NDArray[Any]) -> Any:
+        """Give the spans' numbers, shape (..., R), for each pixel, shape (..., n)."""
+        return np.repeat(of_span, self.spans.count, axis=-1)
 
-    def fragments(self, tolerance: float) -> Fragments:
+    def fragments(self, tolerance: float, alone: bool) -> Fragments:
         """Give all the pixels of the spans, in their order."""
         count = self.spans.count
-        span = np.repeat(np.arange(len(count)), count)
         begin = self.spans.first - (np.cumsum(count) - count)
-        column = np.arange(len(span)) + begin.take(span)
-        return Fragments(self, span, column, tolerance)
+        column = self.each(begin)
+        column += np.arange(len(column))
+        return Fragments(self, column, tolerance, alone)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,22 +151,31 @@ class Fragments:
 
     Attributes
     ----------
-    run, span
-        What they are pixels of, and which stretch of it, shape (n,).
+    run
+        What they are pixels of.
     column
         Of each pixel, shape (n,).
     tolerance
         By how much colours may be off, units of displayed white.
+    alone
+        Whether each has its pixel for itself, and they lie in the pixels' order.
+    some
+        Which stretch of the run each is a pixel of, shape (n,); None for all pixels of
+        all stretches, one after the other.
     """
 
     run: Run
-    span: Indices
     column: Indices
     tolerance: float
+    alone: bool
+    some: Indices | None = None
 
     def of(self, some: Indices | slice) -> Fragments:
         """Give some of them."""
-        part = Fragments(self.run, self.span[some], self.column[some], self.tolerance)
+        if isinstance(some, slice) and some == slice(0, len(self.column)):
+            return self
+        how = self.tolerance, self.alone, self._span[some]
+        part = Fragments(self.run, self.column[some], *how)
         for known in ("_first", "_across"):  # where the depth test has asked for them
             if known in self.__dict__:
                 part.__dict__[known] = self.__dict__[known][some]
@@ -170,17 +184,26 @@ class Fragments:
     @property
     def row(self) -> Indices:
         """Give the row of each pixel, shape (n,)."""
-        return self.run.spans.row.take(self.span)
+        return self._each(self.run.spans.row)
+
+    def pixel(self, width: int) -> Indices | slice:
+        """Give row times width plus column of each; a slice where they are one."""
+        ends = self.run.spans.row[[0, -1]] * width + self.column[[0, -1]]
+        if self.alone and ends[1] - ends[0] == len(self.column) - 1:
+            return slice(int(ends[0]), int(ends[1]) + 1)
+        found = self._each(self.run.spans.row * width)
+        found += self.column
+        return found
 
     @property
     def triangle(self) -> Indices:
         """Tell which of the mesh's faces each belongs to, shape (n,)."""
-        return self.run.source[self.run.spans.triangle.take(self.span)]
+        return self._each(self.run.source[self.run.spans.triangle])
 
     @property
     def front(self) -> NDArray[np.bool_]:
         """Tell whether that turns its front to the eye, shape (n,)."""
-        return self.run.front[self.run.spans.triangle.take(self.span)]
+        return self._each(self.run.front[self.run.spans.triangle])
 
     @functools.cached_property
     def depth(self) -> Array:
@@ -203,13 +226,17 @@ class Fragments:
     @property
     def along_x(self) -> Array:
         """Give their exact change from a pixel to the next in its row, shape (K, n)."""
-        return self._change(self.run.step.take(self.span, axis=1))
+        return self._change(self._each(self.run.step))
 
     @property
     def along_y(self) -> Array:
         """Give their exact change from a row to the next below, shape (K, n)."""
-        piece = self.run.spans.triangle.take(self.span)
-        return self._change(self.run.planes.along_y.take(piece, axis=1))
+        along_y = self.run.planes.along_y.take(self.run.spans.triangle, axis=1)
+        return self._change(self._each(along_y))
+
+    @functools.cached_property
+    def _span(self) -> Indices:
+        return self._each(np.arange(len(self.run.spans.row)))
 
     @functools.cached_property
     def _across(self) -> Array:
@@ -218,14 +245,20 @@ class Fragments:
     @functools.cached_property
     def _first(self) -> Array:
         found = self._linear(0)
-        return np.maximum(found, self.run.least, out=found)
+        return np.maximum(found, self.run.planes.least, out=found)
 
     def _linear(self, k: int) -> Array:
         """Evaluate a plane at the pixels' centres."""
-        found = self.run.step[k].take(self.span)
+        found = self._each(self.run.step[k])
         found *= self._across
-        found += self.run.start[k].take(self.span)
+        found += self._each(self.run.start[k])
         return found
+
+    def _each(self, of_span: NDArray[Any]) -> Any:
+        """Give the spans' numbers, shape (..., R), for each pixel, shape (..., n)."""
+        if self.some is None:
+            return self.run.each(of_span)
+        return of_span.take(self.some, axis=-1)
 
     def _change(self, slope: Array) -> Array:
         """Differentiate the quotient: (a / q)' = (a' - (a / q) q') / q."""

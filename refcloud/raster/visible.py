@@ -7,15 +7,13 @@ last fragment, or the nearest one, and the others are never shaded.
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
-from refcloud.raster.store import State, Store
-from refcloud.raster.varying import Fragments
+from refcloud.raster.store import DEPTH_FUNCS, State, Store
 
 Indices = NDArray[np.int64]
 Some = Indices | slice  # of a list of fragments; a slice is free
@@ -23,10 +21,12 @@ Some = Indices | slice  # of a list of fragments; a slice is free
 
 def layers(
     store: Store,
-    state: State,
-    pixel: Indices,
-    fragments: Fragments,
+    states: tuple[State, State],
+    pixel: Some,
+    depth: Callable[[], Array],
     scratch: Indices,
+    *,
+    alone: bool = False,
 ) -> Iterator[tuple[Some, State]]:
     """Sort out fragments, and note depths where no more needs to be known of them.
 
@@ -34,31 +34,56 @@ def layers(
     ----------
     store
         What they are drawn over.
-    state
-        The operations that are on.
+    states
+        The operations that are on, and the same without a depth test.
     pixel
-        Row times width plus column of each, in drawing order, shape (n,).
-    fragments
-        The fragments.
+        Row times width plus column of each, in drawing order, shape (n,); a slice only
+        where none shares its pixel.
+    depth
+        Gives the depth of each, shape (n,), where it is asked.
     scratch
         One whole number for each pixel of the framebuffer, whatever it is.
+    alone
+        Whether it is known that none shares its pixel.
 
     Yields
     ------
     Fragments, no two of one pixel, and which operations they still have to go through:
     done one after the other, that gives the same as one fragment after the other.
     """
+    state, tested = states
+    tests = state.depth_func is not None and store.depth is not None
+    if alone:
+        if tests:
+            yield _passing(store, state, pixel, depth()), tested
+        elif isinstance(pixel, slice):
+            yield slice(0, pixel.stop - pixel.start), state
+        else:
+            yield slice(0, len(pixel)), state
+        return
+    assert not isinstance(pixel, slice)
     opaque = state.blending is None
-    if opaque and (state.depth_func is None or store.depth is None):
+    if opaque and not tests:
         # Each hides what was there before: the last one shows.
         last = _last(pixel, np.arange(len(pixel)), scratch)
         yield _all(last, len(pixel)), state
     elif opaque and state.depth_func in ("LESS", "LEQUAL") and state.depth_mask:
-        seen = _nearest(store, state, pixel, fragments.depth, scratch)
-        yield seen, dataclasses.replace(state, depth_func=None)
+        seen = _nearest(store, state, pixel, depth(), scratch)
+        yield seen, tested
     else:
         for layer in _in_turn(pixel, scratch):
             yield layer, state
+
+
+def _passing(store: Store, state: State, pixel: Some, depth: Array) -> Some:
+    """Test the depths of fragments that have their pixels for themselves."""
+    assert store.depth is not None
+    assert state.depth_func is not None
+    passed = DEPTH_FUNCS[state.depth_func](depth, store.depth[pixel])
+    seen = _all(np.flatnonzero(passed), len(depth))
+    if state.depth_mask:
+        store.depth[places(pixel, seen)] = depth[seen]
+    return seen
 
 
 def _last(pixel: Indices, order: Indices, scratch: Indices) -> Indices:
@@ -104,6 +129,15 @@ def _in_turn(pixel: Indices, scratch: Indices) -> Iterator[Some]:
     turn[order] = every - np.maximum.accumulate(np.where(begins, every, 0))
     by_turn = np.argsort(turn, kind="stable")
     yield from np.split(by_turn, np.cumsum(np.bincount(turn))[:-1])
+
+
+def places(pixel: Some, some: Some) -> Some:
+    """Give the pixels of some fragments, as a slice where both are one."""
+    if not isinstance(pixel, slice):
+        return pixel[some]
+    if isinstance(some, slice):
+        return slice(pixel.start + some.start, pixel.start + some.stop)
+    return some + pixel.start
 
 
 def pieces(some: Some, most: int) -> Iterator[Some]:

@@ -15,9 +15,10 @@ from refcloud.camera import Camera, OrthographicCamera, axes
 from refcloud.checking import checked
 from refcloud.cloudmap.box import LINES, WALLS, box_lines, box_triangles
 from refcloud.conventions import Array, Shape, Vector
+from refcloud.raster.diamonds import Thickness
 from refcloud.raster.factors import Blending
 from refcloud.raster.framebuffer import Framebuffer, Rgba
-from refcloud.raster.lines import Thickness, draw_lines
+from refcloud.raster.lines import draw_lines
 from refcloud.raster.meshes import WORLD, separate
 from refcloud.raster.store import State
 from refcloud.raster.triangles import draw_triangles

@@ -27,6 +27,7 @@ SUBPIXEL = 256  # 8 bits, what graphics hardware has
 GUARD = 8192.0
 NEAR = 1e-3
 Near = Annotated[float, Range(1e-100, 1e100, "scene units")]
+Far = Annotated[float, Range(1e-100, 1e100, "scene units")]
 
 
 def to_camera(camera: AnyCamera, points: Array) -> Array:
@@ -99,36 +100,6 @@ def planes_of(camera: AnyCamera, near: float, far: float | None = None) -> Array
     return planes / np.abs(planes).max(axis=1, keepdims=True)
 
 
-def cut_line(ends: Array, planes: Array) -> Array | None:
-    """Cut a line by planes.
-
-    Parameters
-    ----------
-    ends
-        Right, up and depth of both ends, shape (2, 3).
-    planes
-        Shape (K, 4), from `planes_of`.
-
-    Returns
-    -------
-    The ends of what is left, shape (2, 3), or None for nothing.
-    """
-    for plane in planes:
-        inside = ends @ plane[:3] + plane[3]
-        if (inside < 0.0).all():
-            return None
-        for end in (0, 1):
-            if inside[end] < 0.0:
-                ends = ends.copy()
-                ends[end] = _meeting(ends[1 - end], ends[end], inside[[1 - end, end]])
-    return ends
-
-
-def _meeting(inner: Array, outer: Array, inside: Array) -> Array:
-    """Give the place between two points where a plane lies."""
-    return inner + (inside[0] / (inside[0] - inside[1])) * (outer - inner)
-
-
 def snapped(camera: AnyCamera, place: Array, near: float) -> Places:
     """Put a place of the camera's frame into the window, on whole sub-pixels.
 
@@ -169,6 +140,19 @@ def to_subpixels(pixels: Array) -> Places:
     The same shape; a half goes up.
     """
     return np.floor(pixels * SUBPIXEL + 0.5).astype(np.int64)
+
+
+def refuse_depths(
+    camera: AnyCamera, near: float, far: float | None, depth_func: str | None
+) -> None:
+    """Refuse a far plane before the near one, or a depth test that has no scale."""
+    if far is not None and far <= near:
+        got = f"{far:g}, near {near:g}"
+        raise ValueError(complaint("far", "a depth beyond near", got))
+    parallel = not isinstance(camera, Camera)
+    if parallel and far is None and depth_func is not None:
+        expected = "a depth for the depth test of parallel rays"
+        raise ValueError(complaint("far", expected, "None"))
 
 
 def refuse_other_size(buffer: Framebuffer, camera: AnyCamera) -> None:

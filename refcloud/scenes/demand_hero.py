@@ -10,6 +10,7 @@ cloud map is as fine as the picture shows it: a voxel is some two pixels.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import time
 from dataclasses import dataclass
@@ -47,6 +48,9 @@ from refcloud.transport.scattering import report_of
 PLAN, VOXELS, FIELD_VOXELS = PLANS["quick"], 96, 40
 VOXEL_PIXELS = 2.0  # of a picture, where the cloud is
 FINEST, COARSEST = 0.22, 1.6  # scene units of the cloud's own
+KEPT_FROM = (
+    0.8  # voxels of small pictures: a map of 2 MB takes longer to make than draw
+)
 
 
 @dataclass(frozen=True)
@@ -121,7 +125,10 @@ def draw(of: Hero, model: Model, view: View) -> Picture:
     for placed in clouds:
         start = time.perf_counter()
         voxel = fineness(camera, placed)
-        grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
+        if voxel < KEPT_FROM or view.observe is not None:
+            grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
+        else:
+            grid = coarse_billows(placed.seed, voxel)
         middle = time.perf_counter()
         how = {
             "step": 0.5 * voxel,
@@ -181,6 +188,12 @@ def light_in(
     if view.observe is not None:
         view.observe("scattered light", light)
     return light
+
+
+@functools.lru_cache(maxsize=2 * (len(FIELD) + 1))
+def coarse_billows(seed: int, voxel: float) -> VoxelGrid:
+    """Make a coarse cloud map once: small pictures are drawn many times."""
+    return billows(seed=seed, voxel=voxel)
 
 
 def fineness(camera: AnyCamera, placed: Placed) -> float:

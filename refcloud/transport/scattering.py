@@ -15,7 +15,12 @@ from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Colour, Tolerance, Vector, unit_vector
 from refcloud.optics import Medium, Sun
 from refcloud.transport.cases import cases_of
-from refcloud.transport.cut_out import beam_norms, cut_out, refuse_unbounded
+from refcloud.transport.cut_out import (
+    beam_norms,
+    cut_out,
+    refuse_thick,
+    thickest_voxel,
+)
 from refcloud.transport.harmonics import harmonics
 from refcloud.transport.levels import halved, halved_light
 from refcloud.transport.plans import PLANS, GradeName, Plan, plan_for
@@ -25,6 +30,10 @@ from refcloud.transport.sun import sun_depths
 from refcloud.transport.swept import dense
 
 DARK = np.zeros(3)
+
+
+# Optical depth of a voxel from which on pictures say that light is missing.
+COARSE = 3.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -120,7 +129,9 @@ def scattered_light(
         Error of the picture that is allowed, in units of displayed white, against the
         plan "finest", which 0 chooses. "finest" itself is some 0.005 from an unbiased
         estimate at an optical depth of 0.25 per voxel, 0.02 at 1.25, 0.1 at 5 and 0.24
-        at 20 (relative RMSE).
+        at 20 (relative RMSE). The light of an even wall of albedo 0.9, seen from the
+        front, is short by 0.2 at 3 per voxel, 0.6 at 30 and 0.7 at 1000, where light
+        that was scattered once alone is left.
 
     Returns
     -------
@@ -129,7 +140,7 @@ def scattered_light(
     Raises
     ------
     ValueError
-        The optical depth across the cloud is no number.
+        A voxel is over 1e4 optical depths thick.
 
     Source: an extension of paper M (multiple scattering, X09).
 
@@ -141,23 +152,20 @@ def scattered_light(
     True
     """
     suns = (suns,) if isinstance(suns, Sun) else suns
-    refuse_unbounded(grid, medium)
+    refuse_thick(grid, medium)
     if isinstance(plan, str):
         plan = PLANS[plan]
     elif plan is None:
-        edge = float(cell_size(grid).max())
-        depth = float(medium.sigma_t_rgb.max()) * float(grid.density.max()) * edge
-        plan = plan_for(tolerance, suns, medium, depth)
+        plan = plan_for(tolerance, suns, medium, thickest_voxel(grid, medium))
     above, below = (DARK if c is None else np.asarray(c) for c in (sky, ground))
     # 1. Cut the cloud out, and let the suns shine on it.
     kinds, channels = cases_of(medium, suns, above, below)
     plan, cloud, halvings = cut_out(grid, plan, max(s for s, _, _ in kinds))
     dtype = "float64" if plan.double else "float32"
-    columns = [sun_depths(cloud, sun.direction, dtype=dtype).density for sun in suns]
+    columns = [_columns(cloud, sun, sun.direction, dtype) for sun in suns]
     behind = []
     if medium.phase == "hg" and medium.g < 0.0:
-        back = [-sun.direction for sun in suns]
-        behind = [sun_depths(cloud, way, dtype=dtype).density for way in back]
+        behind = [_columns(cloud, sun, -sun.direction, dtype) for sun in suns]
     norms = [
         beam_norms(
             cloud, columns, behind, suns, Medium(s, a, medium.g, medium.phase), plan
@@ -201,6 +209,13 @@ def scattered_light(
     )
 
 
+def _columns(cloud: VoxelGrid, sun: Sun, way: Array, dtype: Any) -> NDArray[Any]:
+    """Give the columns of density that a sun's light passes; none where it has none."""
+    if not sun.irradiance.any():
+        return np.zeros(cloud.density.shape, dtype)
+    return sun_depths(cloud, way, dtype=dtype).density
+
+
 @checked
 def source_toward(light: ScatteredLight, direction: Vector) -> Array:
     """Give the source of scattered light in a direction, at each voxel.
@@ -236,6 +251,12 @@ def report_of(lights: Sequence[ScatteredLight]) -> str:
     D, H, W = max((light.shape for light in lights), key=math.prod)
     count = f"{len(lights)} solutions, up to " if len(lights) > 1 else ""
     text = f"{count}{' + '.join(map(str, sweeps))} sweeps, voxels {W} x {H} x {D}"
+    tau = max(thickest_voxel(light.grid, light.medium) for light in lights)
+    if tau > COARSE:
+        text += (
+            f"; voxels are up to {tau:.3g} optical depths thick: light scattered more"
+            " than once is short by a fifth and more, use smaller voxels"
+        )
     if all(light.converged for light in lights):
         return text
     residual = max(light.residual for light in lights)

@@ -20,6 +20,7 @@ from refcloud.cli.clouds import denser
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
 from refcloud.cli.figure import Setting
+from refcloud.cli.studio import Page
 from refcloud.conventions import Range
 from refcloud.figure import figures
 from refcloud.march import Mixing
@@ -75,6 +76,7 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "scene": [],
     "noise": [(noise_picture, {"kind"})],
     "bench": [(Measurement, set())],
+    "studio": [(Page, set())],
 }
 RENAMED = {"direction": "sun"}
 OWN_DEFAULTS = {

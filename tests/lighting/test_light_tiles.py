@@ -63,8 +63,9 @@ def test_pairs_are_fewer_than_fragments() -> None:
     single = fragments.fragments(view, EXTENDED, np.float32)
     assert tiles is not None
     assert single is not None
-    assert len(tiles.ball) < 0.05 * len(single.ball)
-    assert tiles.weight.size < 2.0 * len(single.ball)
+    # Each pair holds 16 pixels; few of them lie outside the ball.
+    assert len(tiles.ball) < 0.1 * len(single.ball)
+    assert tiles.weight.size < 1.3 * len(single.ball)
     assert tiles.weight.shape[1] == EDGE**2
     # The same weights in all, and the same that is read.
     for name in ("weight", "read"):

@@ -171,6 +171,9 @@ def test_each_saving_is_counted_with_its_bound() -> None:
     rows = {row.what: row for row in eyeward(lit, eye, tolerance=0.02)[1]}
     double = rows["tiles in double precision"]
     assert 0 < double.skipped == double.of
-    between = rows["pixels between nodes of smooth tiles"]
-    assert 0 < between.skipped < between.of == double.of * 256
-    assert double.bound + between.bound < 0.02
+    nodes = rows["pixels between nodes of smooth tiles"]
+    second = rows["pixels between every second one"]
+    for row in nodes, second:
+        assert 0 < row.skipped < row.of == double.of * 256
+    assert nodes.skipped + second.skipped < nodes.of
+    assert double.bound + nodes.bound + second.bound < 0.02

@@ -179,8 +179,9 @@ def test_a_picture_made_in_parts_is_the_same(seed: int, power, most) -> None:
 def test_no_product_is_large_enough_for_a_second_thread() -> None:
     # OpenBLAS takes more threads from rows x inner x columns of 2^18 on.
     for size in (8, 64, 144, PIXELS):
-        together = tiles.SAMPLES // (tiles.LEAST_SLOTS * size)
+        samples = tiles.CACHED // np.dtype(np.float32).itemsize
+        together = samples // (tiles.LEAST_SLOTS * size)
         assert together * 4 * size < 2**18
-        assert 3 * (tiles.MOST_SLOTS + 1) * size < 2**18
+        assert 3 * (4 * tiles.MOST_SLOTS + 1) * size < 2**18
         # Nodes to pixels, and to the last terms.
         assert 4 * size * PIXELS < 2**18 or size == PIXELS

@@ -315,9 +315,10 @@ def test_clouds_that_do_not_touch_light_each_other() -> None:
     assert lit.sum() > J.sum()
 
 
-def test_depths_without_end_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"^sigma_t: expected an optical depth below"):
-        scattered_light(cloud(4), SUN, medium=Medium(1e300))
+@pytest.mark.parametrize("sigma_t", [1e5, 1e300])
+def test_voxels_too_thick_to_carry_light_are_refused(sigma_t: float) -> None:
+    with pytest.raises(ValueError, match=r"^sigma_t: expected an optical depth of at"):
+        scattered_light(cloud(4), SUN, medium=Medium(sigma_t))
 
 
 def test_an_unknown_plan_is_refused() -> None:

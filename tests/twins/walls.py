@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import typing
+
 import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -11,6 +13,8 @@ from refcloud.camera import Camera, project
 from refcloud.cloudmap import box_corners, box_triangles
 from refcloud.plain import walls as plain
 from refcloud.raster import window
+from refcloud.raster.store import DepthFunc
+from refcloud.raster.window import to_camera
 from twins import Draw, twin
 from twins.box import drawn_box
 from twins.camera import as_plain, drawn_camera, places
@@ -66,18 +70,36 @@ def _buffers(camera) -> tuple[raster.Framebuffer, list]:
     return raster.Framebuffer(pixels), pixels.tolist()
 
 
-@twin(raster.draw_lines, plain.draw_lines, tolerance=1e-15, why=WHOLE)
+@twin(
+    raster.draw_lines,
+    plain.draw_lines,
+    tolerance=1e-13,
+    why="1 / depth against depth, of ends 1e4 apart; colours are the same products",
+)
 def draw_lines(draw: Draw):
     camera, near = drawn_camera(draw), draw(nears)
+    far = draw(st.sampled_from([8.0, 20.0]) | st.none())
+    func = draw(st.none() | st.sampled_from(typing.get_args(DepthFunc)))
+    writes = draw(st.booleans())
+    if far is None and not isinstance(camera, Camera):
+        far = 50.0
     ends = np.array(draw(st.lists(st.tuples(places, places), max_size=3)))
     ends = ends.reshape(-1, 2, 3)
     assume_plain_places(camera, ends, near)
-    (buffer, expected), color = _buffers(camera), draw(colours)
+    assume(far is None or (np.abs(to_camera(camera, ends)[..., 2] - far) > 1e-9).all())
+    (flat, expected), color = _buffers(camera), draw(colours)
     thickness = draw(thicknesses)
-    how = {"thickness": thickness, "near": near}
-    raster.draw_lines(buffer, camera, ends, color=color, **how)
-    plain.draw_lines(expected, as_plain(camera), ends.tolist(), color, thickness, near)
-    return buffer.pixels, expected
+    buffer = raster.Framebuffer(flat.pixels, np.full(flat.pixels.shape[:2], 0.75))
+    depths = buffer.depth.tolist()
+    how = {"thickness": thickness, "near": near, "far": far}
+    tests = {"depth_func": func, "depth_mask": writes}
+    raster.draw_lines(buffer, camera, ends, color=color, **how, **tests)
+    state = plain.OVER._replace(depth_func=func, depth_mask=writes)
+    listed = ends.tolist()
+    how = color, thickness, near, far, state
+    plain.draw_lines(expected, depths, as_plain(camera), listed, *how)
+    found = np.concatenate([buffer.pixels, buffer.depth[..., None]], axis=2)
+    return found, np.concatenate([expected, np.array(depths)[..., None]], axis=2)
 
 
 @twin(raster.faces_away, plain.faces_away, tolerance=0.0, why="a sign")

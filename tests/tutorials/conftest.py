@@ -1,0 +1,8 @@
+"""The tutorials' own modules, found as a tutorial finds them: beside itself."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tutorials"))

@@ -1,0 +1,173 @@
+# %% [markdown]
+# # 17 · Multiple scattering: the light left out
+#
+# *Why are real clouds so white, and ours so grey?*
+#
+# Because light that a droplet scatters meets the next droplet, and the next. Counted
+# once, most of it is thrown away: a thick cloud shows a sixth of its light. The rest
+# can be solved.
+
+# %%
+from typing import Annotated, Literal
+
+import numpy as np
+from lesson import Lesson
+from plots import curves
+
+import refcloud as rc
+from refcloud import march, transport
+from refcloud.conventions import Range
+
+lesson = Lesson()
+CLOUD = rc.generate(seed=12, voxel=6.0 if lesson.quick else 2.0)
+
+
+def picture(
+    *,
+    scattering: Literal["single", "multiple"] = "multiple",
+    sigma_t: Annotated[float, Range(0.05, 4.0, "1 / scene unit")] = 0.8,
+    albedo: Annotated[float, Range(0.0, 1.0)] = 1.0,
+    g: Annotated[float, Range(-0.9, 0.9)] = 0.6,
+) -> rc.Picture:
+    """March a cloud with light of one order or of every order of scattering.
+
+    Parameters
+    ----------
+    scattering
+        Once, or as often as it happens.
+    sigma_t
+        Extinction per unit of length where the density is 1.
+    albedo
+        Share of the light that survives each meeting.
+    g
+        Mean cosine of the scattering.
+    """
+    width, height = lesson.size(400, 300)
+    camera = rc.Camera([0, -10, 128], [1, 17, 0], width=width, height=height)
+    return rc.render(
+        CLOUD,
+        camera=camera,
+        suns=rc.Sun([-0.62, 0.62, 0.42], [6.3, 6.0, 5.6]),
+        medium=rc.Medium(sigma_t, albedo, g, "hg"),
+        scattering=scattering,
+        ambient=[0.2, 0.28, 0.4],
+        tolerance=4 / 255,
+    )
+
+
+lesson.show(picture, "17-multiple", "A cloud with light of every order of scattering")
+lesson.row(
+    {"once": lambda: picture(scattering="single"), "every order": picture},
+    "17-once",
+    "The same cloud, medium and sun; light scattered once, and as often as it happens",
+    columns=2,
+)
+
+# %% [markdown]
+# ## One formula
+#
+# Light `L` at a place in a direction is made of light from all directions at all places
+# before it. That the unknown stands on both sides is what makes it hard:
+#
+# $$ L(x, \omega) = \int_0^\infty e^{-\tau(x, x - t\omega)} \, \sigma_t \, a
+# \int_{S^2} p(\omega, \omega') \, L(x - t\omega, \omega') \, d\omega' \, dt $$
+#
+# The plain way is to follow one photon at a time, and to throw dice: unbiased, noisy.
+
+# %%
+from refcloud.plain import paths as plain
+
+lesson.source(plain.walk)
+
+# %% [markdown]
+# The array way solves it once for all eyes: the sphere becomes a few dozen directions,
+# and each **sweep** carries light along all of them through the whole grid. Light that
+# comes out goes back in, until nothing changes any more.
+
+# %%
+from refcloud.plain import sweep as plain_sweep
+
+lesson.source(plain_sweep.sweep)
+
+# %% [markdown]
+# ## The knob: albedo
+#
+# One per cent lost at each meeting is a lot, where light meets a hundred droplets.
+
+# %%
+lesson.strip(
+    picture, "albedo", (0.5, 0.8, 0.95, 0.99, 1.0), "17-strip", "Albedo 0.5 to 1"
+)
+
+# %% [markdown]
+# ## How many meetings?
+#
+# The photons can count. Here is what paths of at most n scatterings show, in the middle
+# of a slab of optical depth 12, against n: single scattering is the first point.
+
+# %%
+slab = rc.VoxelGrid(np.ones((4, 4, 4)), [-40, -40, 0], [40, 40, 1])
+sun, medium = rc.Sun([0.0, 0.5, 1.0]), rc.Medium(12.0, 1.0, 0.6, "hg")
+orders = np.array([1, 2, 4, 8, 16, 32, 64])
+shown = [
+    transport.trace_paths(
+        slab,
+        [[0.0, 0.0, 9.0]],
+        [[0.0, 0.0, -1.0]],
+        suns=sun,
+        medium=medium,
+        paths=512 if lesson.quick else 16384,
+        orders=n,
+    ).radiance[0, 0]
+    for n in orders.tolist()
+]
+once, _ = march.integrate(
+    slab, [0.0, 0.0, 9.0], [[0.0, 0.0, -1.0]], suns=sun, medium=medium
+)
+lesson.show(
+    curves(
+        lesson.size(480, 300),
+        orders,
+        {"paths": shown, "exact, once": np.full(len(orders), once[0, 0])},
+        y_range=(0.0, 3.0),
+        names=("scatterings at most", "radiance"),
+        log=(True, False),
+        legend="bottom",
+    ),
+    "17-orders",
+    "What a slab shows against the number of scatterings that are counted",
+)
+
+# %% [markdown]
+# ## Where this breaks
+#
+# * **No exact method.** The solver's finest plan is the measure; its own distance from
+#   unbiased paths grows with the optical depth of one voxel: 0.5 % at 0.25, 10 % at 5.
+# * **Tricks.** Paper M hands light forward (tutorial 10), "Beer-powder" darkens edges.
+#   They are cheap, and tuned to one cloud: on another they are off by a quarter to four
+#   fifths.
+# * Directions are few. A sharp forward peak is cut off and treated as not scattered at
+#   all (delta-M), or a few dozen directions would miss it.
+#
+# ## Exercises
+#
+# 1. White furnace: put a cloud of albedo 1 into light that comes from everywhere alike.
+#    What is seen?
+# 2. At albedo 0.99, how much is left after 100 meetings?
+# 3. Why is the underside of a real cloud dark, if nothing is absorbed?
+#
+# ## Solutions
+#
+# 3. The light goes back up: a thick slab of albedo 1 reflects nearly all of it.
+
+# %%
+# 1: nothing: the cloud vanishes. What it takes out of a ray, 1 - exp(-3), it puts back.
+how = {"suns": (), "medium": rc.Medium(3.0, 1.0, 0.5, "hg"), "sky": [1.0] * 3}
+furnace = transport.trace_paths(
+    slab, [[0.0, 0.0, 9.0]], [[0.0, 0.0, -1.0]], ground=[1.0] * 3, paths=256, **how
+)
+missing = 1.0 - np.exp(-3.0) - furnace.radiance[0, 0]
+assert abs(missing) < 5 * furnace.error[0, 0]
+
+# 2: a third.
+assert abs(0.99**100 - 0.366) < 1e-3
