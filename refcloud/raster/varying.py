@@ -2,7 +2,9 @@
 
 On the screen a number that is linear over a triangle in space is a quotient: both it
 divided by depth and 1 / depth are linear there. So a span starts at its first pixel's
-numerator and denominator and goes on in equal steps.
+numerator and denominator and goes on in equal steps. The start comes from the corners
+by barycentric weights, quotients of whole numbers from 0 to 1: from anywhere outside of
+a thin triangle its steep planes would lead back to it with few digits left.
 """
 
 from __future__ import annotations
@@ -29,9 +31,15 @@ class Planes:
     ----------
     origin
         The first corner's x and y in sub-pixels, shape (2, T).
+    sides
+        From there to the second and the third corner: x, y, x, y, shape (4, T).
+    area
+        Twice the triangle's, square sub-pixels, shape (T,).
     value
-        There, shape (1 + K, T): first 1 / depth, or depth where rays are parallel, then
-        the attributes, divided by depth for a pinhole.
+        At the first corner, shape (1 + K, T): first 1 / depth, or depth where rays are
+        parallel, then the attributes, divided by depth for a pinhole.
+    rises
+        From there to the second and the third corner, each of shape (1 + K, T).
     along_x, along_y
         Change from pixel to pixel, shape (1 + K, T).
     least
@@ -39,7 +47,10 @@ class Planes:
     """
 
     origin: Places
+    sides: Places
+    area: Array
     value: Array
+    rises: tuple[Array, Array]
     along_x: Array
     along_y: Array
     least: float
@@ -60,13 +71,16 @@ def planes_through(x: Places, y: Places, values: Array) -> Planes:
     The planes.
     """
     x1, x2, y1, y2 = x[1] - x[0], x[2] - x[0], y[1] - y[0], y[2] - y[0]
-    scale = SUBPIXEL / (x1 * y2 - x2 * y1).astype(np.float64)
+    area = (x1 * y2 - x2 * y1).astype(np.float64)
+    scale = SUBPIXEL / area
     first = values[:, 0]
     rise1, rise2 = values[:, 1] - first, values[:, 2] - first
     along_x = (rise1 * y2 - rise2 * y1) * scale
     along_y = (rise2 * x1 - rise1 * x2) * scale
     least = float(values[0].min(initial=np.inf))
-    return Planes(np.stack([x[0], y[0]]), first, along_x, along_y, least)
+    origin, sides = np.stack([x[0], y[0]]), np.stack([x1, y1, x2, y2])
+    rises = rise1, rise2
+    return Planes(origin, sides, area, first, rises, along_x, along_y, least)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,16 +129,20 @@ class Run:
 
     @functools.cached_property
     def start(self) -> Array:
-        """Give the planes in the middle of column 0 of each span's row, (1 + K, R)."""
-        planes, piece = self.planes, self.spans.triangle
+        """Give the planes in the middle of each span's first pixel, (1 + K, R)."""
+        planes, spans = self.planes, self.spans
         x, y = (
-            (HALF - origin.take(piece)).astype(np.float64) / SUBPIXEL
-            for origin in planes.origin
+            SUBPIXEL * place + HALF - origin.take(spans.triangle)
+            for place, origin in zip(
+                (spans.first, spans.row), planes.origin, strict=True
+            )
         )
-        y += self.spans.row
-        start = self.step * x
-        start += planes.along_y.take(piece, axis=1) * y
-        start += planes.value.take(piece, axis=1)
+        x1, y1, x2, y2 = planes.sides.take(spans.triangle, axis=1)
+        area = planes.area.take(spans.triangle)
+        start = planes.value.take(spans.triangle, axis=1)
+        shares = (x * y2 - y * x2) / area, (y * x1 - x * y1) / area
+        for share, rise in zip(shares, planes.rises, strict=True):
+            start += share * rise.take(spans.triangle, axis=1)
         return start
 
     @functools.cached_property
@@ -242,7 +260,8 @@ class Fragments:
 
     @functools.cached_property
     def _across(self) -> Array:
-        return self.column.astype(np.float64)
+        across = self.column - self._each(self.run.spans.first)
+        return across.astype(np.float64)
 
     @functools.cached_property
     def _first(self) -> Array:

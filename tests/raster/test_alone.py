@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 from twins.camera import drawn_camera
 from twins.triangles import drawn_mesh
 
-from refcloud.camera import Camera
+from refcloud.camera import Camera, rays
 from refcloud.raster import (
     Blending,
     Mesh,
     State,
     draw_triangles,
     framebuffer,
+    plane_mesh,
     sphere_mesh,
 )
 from refcloud.raster.spans import Spans
@@ -99,6 +100,29 @@ def test_a_picture_in_one_layer_is_written_as_it_lies_in_memory() -> None:
         lambda f: seen.append(f.pixel(16)) or np.ones((len(f.column), 4)),
     )
     assert seen == [slice(0, 16 * 12)]
+
+
+@settings(max_examples=10)
+@given(st.floats(0.05, 0.8), st.floats(-0.3, 0.3), st.integers(1, 30))
+def test_nothing_pops_as_the_near_plane_sweeps(height, turn, cells) -> None:
+    # A floor below the eye shows at a pixel if it meets the pixel's ray beyond near.
+    camera = Camera([turn, height, 0], [0, 0.5 * height, -1], fov_y=1.5, **SIZE)
+    floor = plane_mesh(cells, cells, width=1e4, depth=1e4)
+    origins, directions = rays(camera)
+    ahead = np.subtract(camera.target, camera.eye) / np.linalg.norm(
+        np.subtract(camera.target, camera.eye)
+    )
+    down = np.maximum(-directions[..., 1], 1e-9)
+    depth = origins[..., 1] / down * (directions @ ahead)
+    before = None
+    for near in np.geomspace(1e-3, 4.0, 12):
+        buffer = framebuffer(16, 12)
+        draw_triangles(buffer, camera, floor, [1.0] * 4, near=near)
+        shown = buffer.pixels[..., 0] == 1.0
+        sure = (directions[..., 1] < -0.02) & (np.abs(depth / near - 1.0) > 0.02)
+        np.testing.assert_array_equal(shown[sure], (depth > near)[sure])
+        assert before is None or not (shown & ~before).any()
+        before = shown
 
 
 def test_depths_beyond_those_of_first_corners_are_kept() -> None:
