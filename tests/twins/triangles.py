@@ -69,7 +69,7 @@ def assume_plain_cuts(camera, mesh: raster.Mesh, near: float, far) -> None:
     raster.draw_triangles,
     plain.draw_triangles,
     tolerance=1e-9,
-    why="4e-12 in 4,000 slivers; a step may be off by 2^-53 of length / height, 2^21",
+    why="4e-12 in 1,800 slivers; a step may be off by 2^-53 of length / height, 2^21",
 )
 def draw_triangles(draw: Draw):
     camera, near = drawn_camera(draw), draw(nears)
