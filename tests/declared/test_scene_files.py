@@ -73,7 +73,7 @@ def test_every_file_draws_its_scene_to_the_bit(name: str, tmp_path: Path) -> Non
     test_a_file_draws_the_scene_to_the_bit(name, tmp_path)
 
 
-@settings(max_examples=20)
+@settings(max_examples=8)
 @given(data=st.data())
 def test_every_number_comes_back_to_the_last_bit(data, tmp_path_factory) -> None:
     def drawn(thing: type, *names: str) -> dict[str, Any]:
