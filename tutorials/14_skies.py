@@ -8,6 +8,7 @@
 # small clouds become **sprites**, pictures that always face the eye.
 
 # %%
+from dataclasses import replace
 from typing import Annotated
 
 from lesson import Lesson
@@ -42,7 +43,8 @@ def picture(
     """
     width, height = lesson.size(480, 320)
     cover = sky.Cover(threshold, opacity_slope, 1.05, light_slope, 0.35)
-    return shader.plane_sky(Model({}), View(width, height, time=time), cover=cover)
+    plane = replace(shader.PLANE, cover=cover)
+    return shader.plane_sky(Model({}), View(width, height, time=time), of=plane)
 
 
 lesson.show(picture, "14-plane", "Document S: a plane of clouds, six octaves of noise")

@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -155,17 +155,21 @@ FACES = Faces(OWN.lower, OWN.upper, size=64, cells=4, seed=2, threshold=0.45)
 
 def cloud_in_box(of: Boxed, view: View) -> VoxelGrid:
     """Make the cloud, as fine as the picture shows it."""
-    lower, upper = of.lower, of.upper
-    lumps = {f.name: getattr(of.cloud, f.name) for f in dataclasses.fields(Lumps)}
+    lower, upper, how = of.lower, of.upper, lumps(of)
     if view.offset is not None:
         # The noise is fixed in the world: wind through the box is the box moved against
         # it. Lumps come in at one wall and leave at the other, so all of them stay.
         against = lower - view.offset, upper - view.offset
-        blown = box_cloud(*against, voxel=fineness(view), **lumps)
+        blown = box_cloud(*against, voxel=fineness(view), **how)
         return VoxelGrid(blown.density, lower, upper)
-    grid = box_cloud(lower, upper, voxel=fineness(view), **lumps)
+    grid = box_cloud(lower, upper, voxel=fineness(view), **how)
     # Single lumps near the walls would hang in the air as beads.
     return VoxelGrid(largest_part(grid.density), grid.lower, grid.upper)
+
+
+def lumps(of: Boxed) -> dict[str, Any]:
+    """Give the cloud's parameters as `box_cloud` takes them."""
+    return {f.name: getattr(of.cloud, f.name) for f in dataclasses.fields(Lumps)}
 
 
 def fineness(view: View) -> float:

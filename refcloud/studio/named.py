@@ -69,11 +69,13 @@ FRONT = Parts(sun=man.FRONT, medium=man.CLOUD_MEDIUM, look=MAN)
 AGAINST = Parts(ALL, FROM_BELOW, man.BEHIND, look=MAN)
 OF_THE_PLANE = Parts(())
 PARTS = {
-    "cumulus": Parts(ALL, FROM_BELOW, cumulus.OWN.sun, cumulus.OWN.medium, Look()),
+    "cumulus": Parts(ALL, FROM_BELOW, SUN, cumulus.OWN.single_medium, Look()),
     **dict.fromkeys(("man-04", "man-08", "man-09", "man-10"), FRONT),
     "man-13": replace(AGAINST, medium=man.ISOTROPIC),
     "man-14": replace(AGAINST, medium=man.FORWARD),
-    "demand": Parts(MARCHED, FROM_BELOW, demand_hero.OWN.sun, demand_hero.OWN.medium),
+    "demand": Parts(
+        MARCHED, FROM_BELOW, demand_hero.SUN, demand_hero.OWN.octave_medium
+    ),
     **dict.fromkeys(("demand-box", "demand-lit", "demand-background"), IN_BOX),
     "demand-faces": Parts(("camera",), AT_BOX),
     "demand-quad": Parts(("camera", "medium"), AT_BOX, medium=demand.OWN.medium),

@@ -113,7 +113,7 @@ BOX_GROUPS = (
         "Noise in the box: scale, voxels",
         box_cloud,
         without=("first", "second"),
-        start={**vars(demand.OWN.cloud), "voxel": 0.03},
+        start={**demand.lumps(demand.OWN), "voxel": 0.03},
     ),
     sun_group(demand.OWN.sun),
     second_sun(),

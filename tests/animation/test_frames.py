@@ -220,6 +220,7 @@ class Backwards(Executor):
 SCENE = {"cloud": "man-10", "moves": ROUND, "tolerance": 1 / 255}
 
 
+@pytest.mark.slow
 def test_the_same_bits_whoever_draws(tmp_path: Path) -> None:
     animate(path=tmp_path / "here", **small(**SCENE))
     here = in_bytes(tmp_path / "here")
@@ -289,6 +290,7 @@ def test_only_a_few_frames_are_asked_for_ahead(tmp_path: Path) -> None:
     assert sorted(asked) == list(range(200))
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_frames(tmp_path: Path) -> None:
     def peak(frames: int, name: str) -> int:
         size = {"frames": frames, "width": 96, "height": 72}

@@ -205,6 +205,7 @@ def test_all_figures_make_a_page(few: list[str], tmp_path: Path) -> None:
     assert load_picture(tmp_path / "all" / "man-05.png").linear.shape == (480, 640, 3)
 
 
+@pytest.mark.slow
 def test_processes_draw_the_same_files(tmp_path: Path) -> None:
     names = ["man-05", "demand-sky"]
     draw_all(names, "quick", tmp_path / "one")

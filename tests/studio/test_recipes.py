@@ -176,7 +176,7 @@ def test_starting_values_of_scenes_are_their_own() -> None:
         setup = setups()[name]
         values = setup.taken({})
         alone = cooked(setup.recipe(values, SMALL), Kept())["picture"]
-        direction = [float(v) for v in rc.scenes.demand.LIGHT.direction]
+        direction = [float(v) for v in rc.scenes.demand.OWN.sun.direction]
         moved = {"camera": {"up": [0, 2, 0]}}
         if name == "demand-lit":
             moved |= {"sun": {"direction": direction}, "medium": {"g": 0.2 + 1e-16}}
