@@ -101,15 +101,15 @@ def draw(
         "seed": view.seed,
         "backend": view.backend,
     }
-    if is_marched(cloud, how.get("method")):
-        # What the march made for one eye serves the next: the same cloud and suns.
+    solved = how.get("scattering", "single")
+    if is_marched(cloud, how.get("method")) or solved != "single":
+        # What was made for one eye serves the next: the same cloud and suns.
         def keep(name: str, value: Any) -> None:
             if name in ("light volumes", "scattered light"):
                 kept[name] = value
             if view.observe is not None:
                 view.observe(name, value)
 
-        solved = how.get("scattering", "single")
         again = {
             "volumes": kept.get("light volumes", ()),
             "scattering": kept.get("scattered light", solved),
@@ -118,7 +118,8 @@ def draw(
         return render(cloud, **{**how, **common, **lights, **again}, observe=keep)
     if "lit" not in kept:
         kept["lit"] = _lit(cloud, how, view)
-    rest = {name: value for name, value in how.items() if name != "method"}
+    known = ("method", "scattering")
+    rest = {name: value for name, value in how.items() if name not in known}
     return render(kept["lit"], **{**rest, **common}, observe=view.observe)
 
 

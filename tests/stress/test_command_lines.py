@@ -25,7 +25,7 @@ from refcloud.cli.options import Option
 pytestmark = pytest.mark.stress
 
 often = settings(
-    max_examples=100, deadline=None, suppress_health_check=list(HealthCheck)
+    max_examples=40, deadline=None, suppress_health_check=list(HealthCheck)
 )
 # Measuring and serving go on for long; figures are drawn at their own sizes.
 FUZZED = sorted(set(COMMANDS) - {"bench", "studio", "figure"})
@@ -45,7 +45,7 @@ RIGHT = {
 SMALL = {
     "render": ["--width", "6", "--height", "4"],
     "animate": ["--width", "6", "--height", "4", "--jobs", "1", "--frames", "2"],
-    "generate": ["--diameters", "8", "6", "6", "--voxel", "1"],
+    "generate": ["--diameters", "8", "6", "6", "--voxel", "1", "--relief", "1"],
     "approximate": ["--count", "3"],
     "noise": ["--size", "8"],
 }
