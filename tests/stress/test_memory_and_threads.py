@@ -34,7 +34,7 @@ SCENES: dict[str, Callable[[], Picture]] = {
 }
 every_scene = pytest.mark.parametrize("name", SCENES)
 # What one more picture may leave beside arrays, bytes: Python's caches (of `typing`, of
-# code) fill up for a while; worst seen 29 kB a picture, half of that ten pictures later.
+# code) fill up for a while; worst seen 29 kB a picture, half of that ten later.
 MOST_LEFT = 60_000
 ROUNDS = 3
 
@@ -50,8 +50,7 @@ def arrays_held() -> int:
 @every_scene
 def test_memory_stays_flat(name: str) -> None:
     draw = SCENES[name]
-    for _ in range(2):  # tables that are made once
-        draw()
+    draw()  # tables that are made once
     tracemalloc.start()
     arrays, held = [], []
     for _ in range(ROUNDS):
@@ -66,8 +65,8 @@ def test_memory_stays_flat(name: str) -> None:
 @every_scene
 def test_threads_draw_the_same_bits(name: str) -> None:
     alone = SCENES[name]()
-    with ThreadPoolExecutor(4) as pool:
-        together = list(pool.map(lambda _: SCENES[name](), range(3)))
+    with ThreadPoolExecutor(2) as pool:
+        together = list(pool.map(lambda _: SCENES[name](), range(2)))
     for picture in together:
         np.testing.assert_array_equal(picture.linear, alone.linear)
         assert picture.skipped == alone.skipped
