@@ -72,7 +72,7 @@ def text_of(size: tuple[int, int], found: Iterable[Saving]) -> str:
     Lines of text, without a last line break.
     """
     head = ("scene", "stage", "what", "skipped", "of", "share", "error at most")
-    lines = [head]
+    lines: list[tuple[str, ...]] = [head]
     for saving in found:
         row = saving.row
         if row is None:

@@ -284,3 +284,12 @@ def test_a_scene_takes_camera_and_size(run, here, monkeypatch) -> None:
     view = seen["view"]
     assert (view.width, view.height, view.tolerance) == (9, 5, 1 / 255)
     np.testing.assert_array_equal(view.camera.eye, [0, 0, 50])
+
+
+@pytest.mark.parametrize("scattering", ["single", "multiple"])
+def test_frames_of_balls_take_either_kind_of_scattering(scattering, run, here) -> None:
+    line = "--turn-eye 9 --frames 2 --width 6 --height 4 --jobs 1 -o x.png"
+    words = *line.split(), "--scattering", scattering
+    status, out, err = run("animate", "balls.npz", *words)
+    assert (status, err) == (0, "")
+    assert out.splitlines()[-1] == "x.png"
