@@ -92,9 +92,8 @@ def marched(
         if volumes:
             expected = "none beside metaballs, whose light has a closed form"
             raise ValueError(complaint("volumes", expected, "some", "leave them out"))
-        return _balls_marched(
-            cloud, origins, directions, suns, medium, ambient, mixing, background
-        )
+        how = suns, medium, ambient, mixing, tolerance, background
+        return _balls_marched(cloud, origins, directions, *how)
     refuse_unbounded(cloud, medium)
     _refuse_coarse(cloud, medium, origins)
     suns, dark = without_dark(suns, medium)
@@ -131,18 +130,24 @@ def _balls_marched(
     medium: Medium,
     ambient: Array | None,
     mixing: Mixing,
+    tolerance: float,
     background: Array | None,
 ) -> Marched:
-    """March metaballs: exact at any tolerance."""
+    """March metaballs: a tolerance saves what opaque fronts hide, and no more."""
     with np.errstate(over="ignore"):
         whole = float((balls.densities * balls.radii).sum(initial=0.0))
         depth = float(np.max(medium.sigma_t) * np.float64(whole))
     if not depth < BOUNDED:
         _refuse_depth()
+    suns, dark = without_dark(suns, medium)
     lit = sources(suns, medium, directions=directions)
-    found = exact_balls(balls, origins, directions, suns, lit, medium, mixing)
+    how = suns, lit, medium, mixing, tolerance
+    radiance, column, rows = exact_balls(balls, origins, directions, *how)
     light = np.zeros(3) if ambient is None else ambient
-    return Marched(*completed(*found, medium, mixing, light, background))
+    seen, through = completed(radiance, column, medium, mixing, light, background)
+    count = f"{len(balls)} balls x {len(origins)} rays"
+    note = f"marched balls are exact but for what opaque fronts hide: {count}"
+    return Marched(seen, through, dark + rows, (note,) if tolerance > 0.0 else ())
 
 
 def without_dark(
