@@ -44,9 +44,9 @@ class Haze:
 def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     """Give the radiance that each ball would show if nothing came through it.
 
-    Formula: for each sun albedo phase(cos_theta) light + glow, and the ambient light;
-    in the paper's rule a sun's term is g* / (1 - T), g* = albedo tau phase Omega I /
-    (4 pi)
+    Formula: for each sun albedo phase(cos_theta) light + glow, and albedo times the
+    ambient light; in the paper's rule a sun's term is g* / (1 - T), g* = albedo tau
+    phase Omega I / (4 pi)
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
         colours[:, s] = scattered * lit.light[s] * gain
         if lit.glow is not None:
             colours[:, s] += lit.glow[s]
-    colours[:, -1] = lit.ambient
+    colours[:, -1] = medium.albedo_rgb * lit.ambient  # what is absorbed is not seen
     return colours
 
 

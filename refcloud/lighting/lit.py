@@ -26,7 +26,8 @@ class LitMetaballs:
         Irradiance that reaches each ball from each sun, before the phase function
         (E26), shape (S, N, 3).
     ambient
-        Radiance that sky and ground give each ball, shape (N, 3).
+        Radiance of sky and ground that reaches each ball, before the albedo, shape
+        (N, 3).
     medium
         What the cloud is made of.
     look

@@ -190,11 +190,12 @@ def worth_of_light(
     """Bound how much a ball's colour changes where all lights' shares change by 1.
 
     Proved: a colour is the sum over the lights of share times irradiance, albedo,
-    phase function and the rule's gain (`ball_colours`); a phase function is largest
-    forward or backward. A pixel shows a mean of colours, so it changes by no more.
+    phase function and the rule's gain, or of share times albedo and the light of sky
+    or ground (`ball_colours`); a phase function is largest forward or backward. A
+    pixel shows a mean of colours, so it changes by no more.
     """
     peak = float(np.max(phase(medium, np.array([-1.0, 1.0]))))
     light = sum((sun.irradiance for sun in suns), np.zeros(3))
     gain = gain_of(balls, medium, look).max(axis=0, initial=0.0)
     sky = look.sky_light + look.ground_light
-    return float(np.max(peak * medium.albedo_rgb * gain * light + sky))
+    return float(np.max(medium.albedo_rgb * (peak * gain * light + sky)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
@@ -59,12 +60,29 @@ def columns_of(balls: Metaballs, origins: Array, directions: Array) -> Array:
     for start in range(0, len(origins), most):
         part = slice(start, start + most)
         ray, ball, q, u = met(balls, origins[part], directions[part])
-        s = np.sqrt(1.0 - q)
-        chord = primitive(s, q, balls.kernel)
-        chord -= primitive(np.clip(u, -s, s), q, balls.kernel)
-        weight = balls.densities[ball] * balls.radii[ball]
-        found[part] = np.bincount(ray, chord * weight, minlength=len(found[part]))
+        chord = chords_of(balls, ball, q, u)
+        found[part] = np.bincount(ray, chord, minlength=len(found[part]))
     return found
+
+
+def chords_of(balls: Metaballs, ball: Numbers, q: Array, u: Array) -> Array:
+    """Integrate the density of one ball along each chord, from u on.
+
+    Parameters
+    ----------
+    balls, ball
+        The cloud, and a number for each chord, shape (P,).
+    q, u
+        As `met` gives them, shape (P,) each.
+
+    Returns
+    -------
+    Shape (P,), density times scene units.
+    """
+    s = np.sqrt(1.0 - q)
+    chord = primitive(s, q, balls.kernel)
+    chord -= primitive(np.clip(u, -s, s), q, balls.kernel)
+    return chord * (balls.densities[ball] * balls.radii[ball])
 
 
 def met(
@@ -86,13 +104,36 @@ def met(
     """
     offset = [origins[:, k, None] - balls.centers[:, k] for k in range(3)]
     way = [directions[:, k, None] for k in range(3)]
+    q, u = passing(offset, way, balls.radii)
+    ray, ball = np.nonzero((q < 1.0) & (u < np.sqrt(np.maximum(1.0 - q, 0.0))))
+    return ray, ball, q[ray, ball], u[ray, ball]
+
+
+def passing(
+    offset: Sequence[Array], way: Sequence[Array], radii: Array
+) -> tuple[Array, Array]:
+    """Tell how rays pass balls.
+
+    Parameters
+    ----------
+    offset, way
+        From the centre to the origin, and the unit vector of the ray: x, y and z, of
+        shapes that broadcast.
+    radii
+        Of the balls.
+
+    Returns
+    -------
+    The squared distance of the line from the centre, and the origin's place along the
+    line from its middle, in radii.
+    """
     along = offset[0] * way[0] + offset[1] * way[1] + offset[2] * way[2]
     # The foot of the perpendicular, not a difference of squares: far eyes stay exact.
     aside = [o - along * w for o, w in zip(offset, way, strict=True)]
-    q = (aside[0] ** 2 + aside[1] ** 2 + aside[2] ** 2) / balls.radii**2
-    u = along / balls.radii
-    ray, ball = np.nonzero((q < 1.0) & (u < np.sqrt(np.maximum(1.0 - q, 0.0))))
-    return ray, ball, q[ray, ball], u[ray, ball]
+    return (
+        (aside[0] ** 2 + aside[1] ** 2 + aside[2] ** 2) / radii**2,
+        along / radii,
+    )
 
 
 def primitive(u: Array, q: Array, kernel: Kernel) -> Array:

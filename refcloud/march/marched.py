@@ -99,9 +99,8 @@ def marched(
         if volumes:
             expected = "none beside metaballs, whose light has a closed form"
             raise ValueError(complaint("volumes", expected, "some", "leave them out"))
-        return _balls_marched(
-            cloud, origins, directions, suns, medium, ambient, mixing, background
-        )
+        how = suns, medium, ambient, mixing, tolerance, background
+        return _balls_marched(cloud, origins, directions, *how)
     refuse_unbounded(cloud, medium)
     refuse_far("cloud", [cloud.lower, cloud.upper])
     refuse_small("cloud", cell_size(cloud))
@@ -140,9 +139,10 @@ def _balls_marched(
     medium: Medium,
     ambient: Array | None,
     mixing: Mixing,
+    tolerance: float,
     background: Array | None,
 ) -> Marched:
-    """March metaballs: exact at any tolerance."""
+    """March metaballs: a tolerance saves what opaque fronts hide, and no more."""
     with np.errstate(over="ignore"):
         whole = float((balls.densities * balls.radii).sum(initial=0.0))
         depth = float(np.max(medium.sigma_t) * np.float64(whole))
@@ -151,10 +151,15 @@ def _balls_marched(
     refuse_far("cloud", balls.centers)
     refuse_far("cloud", balls.radii)
     refuse_small("cloud", balls.radii)
+    suns, dark = without_dark(suns, medium)
     lit = sources(suns, medium, directions=directions)
-    found = exact_balls(balls, origins, directions, suns, lit, medium, mixing)
+    how = suns, lit, medium, mixing, tolerance
+    radiance, column, rows = exact_balls(balls, origins, directions, *how)
     light = np.zeros(3) if ambient is None else ambient
-    return Marched(*completed(*found, medium, mixing, light, background))
+    seen, through = completed(radiance, column, medium, mixing, light, background)
+    count = f"{len(balls)} balls x {len(origins)} rays"
+    note = f"marched balls are exact but for what opaque fronts hide: {count}"
+    return Marched(seen, through, dark + rows, (note,) if tolerance > 0.0 else ())
 
 
 def without_dark(

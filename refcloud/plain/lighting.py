@@ -213,7 +213,8 @@ def ball_colours(lit: Lit, k: int, camera: Camera) -> list[list[float]]:
                 sent *= rules.solid_angle / WHOLE_SPHERE
             color.append(sent + (lit.glow[s][k][c] if lit.glow else 0.0))
         colours.append(color)
-    return [*colours, list(lit.ambient[k])]
+    around = zip(medium.albedo, lit.ambient[k], strict=True)
+    return [*colours, [albedo * light for albedo, light in around]]
 
 
 def held_tau(tau: float, albedo: float, rules: Rules) -> float:

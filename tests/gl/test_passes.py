@@ -62,6 +62,15 @@ def test_both_backends_carry_the_same_light(balls, suns, medium, look) -> None:
     assert found.balls is balls
 
 
+@every_look
+def test_balls_of_albedo_zero_are_black(look: Look) -> None:
+    skylit = dataclasses.replace(look, sky_light=np.ones(3), ground_light=np.ones(3))
+    how = {"medium": Medium(1.5, 0.0), "look": skylit}
+    picture, _ = gl.eyeward(gl.sunward(BALLS, SUNS, **how), EYE)
+    assert not picture[..., :3].any()
+    assert picture[..., 3].any()
+
+
 SWITCHES = [
     {"readback": "disc"},
     {"readback": "square"},

@@ -47,7 +47,7 @@ def test_colours_are_finite_and_never_negative(balls, suns, medium, look) -> Non
     assert colours.shape == (len(balls), len(suns) + 1, 3)
     assert np.isfinite(colours).all()
     assert (colours >= 0.0).all()
-    np.testing.assert_array_equal(colours[:, -1], lit.ambient)
+    np.testing.assert_array_equal(colours[:, -1], medium.albedo_rgb * lit.ambient)
 
 
 @given(st.floats(-0.9, 0.9), st.sampled_from([1.0, -1.0]))

@@ -16,6 +16,10 @@ from refcloud.camera import Camera, OrthographicCamera, rays
 from refcloud.cloudmap import VoxelGrid
 from refcloud.lighting import Look
 from refcloud.march import ball_columns, integrate
+from refcloud.march.across import LEAST, MOST_CELLS, across
+from refcloud.march.chords import columns_of
+from refcloud.march.marched import marched
+from refcloud.march.mixing import Mixing
 from refcloud.metaballs import Metaballs, axis_depth, field
 from refcloud.metaballs.field import field_grid
 from refcloud.metaballs.kernels import chord
@@ -24,6 +28,7 @@ from refcloud.render import render
 
 KERNELS = ["wyvill", "gaussian"]
 SUN = Sun([0.3, 0.8, 0.5])
+EYE = Camera([0.5, 1.0, 7.0], [0, 0, 0], width=12, height=9)
 HAZE = Medium(1.0, phase="isotropic")
 SMOOTH = Look(
     erosion=0.0, erosion_depth=1.0, relief=0.0, light_reach=0.0, buffer=8, sky_buffer=8
@@ -123,6 +128,79 @@ def test_thick_balls_and_far_eyes_stay_finite(kernel) -> None:
         integrate(ball, [0.3, 0, z], way, suns=SUN, medium=HAZE) for z in (5.0, 1e8)
     )
     assert near[0] == pytest.approx(far[0], abs=1e-6)
+
+
+def sunlit(balls: Metaballs, tolerance: float = 0.0, medium: Medium = HAZE, **light):
+    """March a camera's rays by the inner form, which tells what it left out."""
+    origins, ways = (part.reshape(-1, 3) for part in rays(EYE))
+    how = {"suns": (SUN,), "ambient": None, "mixing": Mixing()} | light
+    return marched(balls, origins, ways, medium=medium, tolerance=tolerance, **how)
+
+
+@settings(max_examples=15)
+@given(seeds, directions(), st.sampled_from(KERNELS), st.sampled_from([0.0, 1e6]))
+def test_cells_across_a_direction_miss_no_ball(seed, way, kernel, offset) -> None:
+    # Radii from a hundredth to twice: cells are of one size, discs are not.
+    some = scattered_balls(seed, 40)
+    radii = some.radii * np.geomspace(0.01, 2.0, 40)
+    balls = Metaballs(some.centers + offset, radii, some.densities, kernel)
+    places = np.concatenate(
+        [balls.centers, balls.centers + 0.7 * radii[:, None] * np.array([1, -1, 0])]
+    )
+    d = np.array(way) / np.linalg.norm(way)
+    found, pairs = across(balls, d).columns(places)
+    assert np.array_equal(found, columns_of(balls, places, d))
+    assert 0 < pairs < len(places) * len(balls)
+
+
+def test_cells_stay_few_however_balls_lie() -> None:
+    ends = Metaballs(np.diag([1e9, 1e9, 1e9]), np.array([1e-3, 1.0, 1e3]), np.ones(3))
+    huge = Metaballs(np.zeros((9, 3)), np.geomspace(1e-6, 1e6, 9), np.ones(9))
+    for balls in (ends, huge):
+        cells = across(balls, np.array([0.0, 0.0, 1.0]))
+        assert len(cells.first) <= MOST_CELLS * (LEAST + len(balls)) + 1
+        assert len(cells.numbers) <= MOST_CELLS * len(balls)
+        found, _ = cells.columns(balls.centers)
+        assert np.array_equal(found, columns_of(balls, balls.centers, cells.direction))
+
+
+def test_few_chords_toward_a_sun_are_looked_at() -> None:
+    found = sunlit(scattered_balls(3, 120))
+    (row,) = found.skipped
+    assert (row.what, row.bound) == ("chords toward suns", 0.0)
+    assert 2 * row.skipped > row.of
+    assert found.notes == ()
+
+
+@settings(max_examples=15)
+@given(
+    seeds,
+    st.floats(-4.0, -1.0),
+    st.floats(0.3, 2.0),
+    st.sampled_from([3.0, np.array([9.0, 3.0, 20.0])]),
+)
+def test_a_tolerance_hides_what_opaque_fronts_hide(seed, digits, k, sigma) -> None:
+    balls, tolerance = scattered_balls(seed, 30), 10.0**digits
+    medium = Medium(sigma, 0.9, 0.5, "hg")
+    mixing = Mixing(light_absorption_through_cloud=k)
+    how = {"suns": (SUN, Sun([0, 0, 1])), "medium": medium, "mixing": mixing}
+    exact, found = sunlit(balls, **how), sunlit(balls, tolerance, **how)
+    assert np.abs(found.radiance - exact.radiance).max() <= tolerance
+    assert np.array_equal(found.transmittance, exact.transmittance)
+    assert found.notes == (
+        "marched balls are exact but for what opaque fronts hide: 30 balls x 108 rays",
+    )
+    hidden = [row for row in found.skipped if row.bound > 0.0]
+    assert all(row.bound == tolerance for row in hidden)
+
+
+def test_what_opaque_fronts_hide_is_counted() -> None:
+    balls = scattered_balls(3, 30)
+    for tolerance in (1e-4, 1e-2):
+        row, _ = sunlit(balls, tolerance, Medium(30.0)).skipped
+        assert row.what == "pieces of rays behind an opaque front"
+        assert 0 < row.skipped < row.of
+        assert row.bound == tolerance
 
 
 def test_no_balls_show_what_lies_behind() -> None:

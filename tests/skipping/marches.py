@@ -7,24 +7,32 @@ import importlib
 from typing import Any
 
 import numpy as np
+import pytest
 from small_marches import BLOB, EYE, MEDIUM, SUN
 from smooth_clouds import cloud
+from twins.lighting import scattered_balls
 
 from refcloud.camera import Camera, rays
 from refcloud.cloudmap import VoxelGrid
 from refcloud.lighting import Octaves, octave_march
 from refcloud.march import integrate
+from refcloud.march.across import Across
+from refcloud.march.chords import columns_of
 from refcloud.march_picture import draw_march
+from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from skipping import Found, proof, replaced
 
 OCTAVES = {"medium": Medium(4.0, 0.9, 0.5, "hg"), "octaves": Octaves(), "step": 0.1}
+BEFORE = Camera([0.5, 1.0, 7.0], [0, 0, 0], width=12, height=9)
 FRONT = Camera([2.2, 1.2, 3.0], [0, 0, 0], width=27, height=20)
 THICK = dataclasses.replace(MEDIUM, sigma_t=60.0)
 FLOAT32 = 2e-6  # sums of some dozen terms of at most 1, in single precision
 
 
-def marched(grid: VoxelGrid, camera: Camera, **how: Any) -> tuple[np.ndarray, tuple]:
+def marched(
+    grid: VoxelGrid | Metaballs, camera: Camera, **how: Any
+) -> tuple[np.ndarray, tuple]:
     """March all pixels; light and transmittance side by side, and the report."""
     seen: dict[str, Any] = {}
     how = {"suns": SUN, "medium": MEDIUM} | how
@@ -127,3 +135,28 @@ def marched_suns_without_light() -> Found:
     suns = [Sun([0.3, 0.9, 0.1], np.full(3, strength)) for strength in (0.0, 1e-300)]
     (found, rows), (whole, _) = (marched(BLOB, EYE, suns=(SUN, sun)) for sun in suns)
     return Found(found, whole, rows)
+
+
+def by_balls(tolerance: float) -> tuple[np.ndarray, tuple]:
+    """March thick balls, at a tolerance or to the end."""
+    return marched(scattered_balls(3, 30), BEFORE, medium=THICK, tolerance=tolerance)
+
+
+@proof("march", "pieces of rays behind an opaque front")
+def pieces_of_rays_behind_an_opaque_front() -> Found:
+    found, rows = by_balls(0.05)
+    return Found(found, by_balls(0.0)[0], rows)
+
+
+@proof("march", "chords toward suns")
+def chords_toward_suns() -> Found:
+    found, rows = by_balls(0.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Across, "columns", every_chord)
+        whole, _ = by_balls(0.0)
+    return Found(found, whole, rows)
+
+
+def every_chord(cells: Across, places: np.ndarray) -> tuple[np.ndarray, int]:
+    """Look at all balls from every place."""
+    return columns_of(cells.balls, places, cells.direction), 0
