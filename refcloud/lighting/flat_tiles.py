@@ -8,6 +8,8 @@ sample can miss what lies beside it: the margins are those that generated scenes
 
 from __future__ import annotations
 
+import functools
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -211,10 +213,11 @@ def certified_tiles(
     whole, between = (max(error - cut, 0.0) for error in sampled)
     if MARGIN_FLOAT32 * whole > share or MARGIN_NODES * between > most:
         return exact_tiles(lists, flat, least), []
-    rows = [Skipped("eye", "tiles in double precision", count, count, share)]
+    told = functools.partial(Skipped, "eye", how="certified")
+    rows = [told("tiles in double precision", count, count, share)]
     if saved:
         what = "pixels between nodes of smooth tiles"
-        rows.append(Skipped("eye", what, saved, count * PIXELS, most - share))
+        rows.append(told(what, saved, count * PIXELS, most - share))
     return drawn, rows
 
 

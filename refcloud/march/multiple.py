@@ -9,16 +9,20 @@ import numpy as np
 
 from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
-from refcloud.conventions import Array, Observer
-from refcloud.march.glow import glow
+from refcloud.conventions import Array, Observer, Skipped
+from refcloud.march.glowing import glow_within
 from refcloud.march.marched import Marched, marched
 from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.transport import LightVolume, ScatteredLight, scattered_light
+from refcloud.transport import PLANS, LightVolume, ScatteredLight, scattered_light
+from refcloud.transport.plans import plan_for
 
 Scattering = Literal["single", "multiple"] | ScatteredLight
+# Shares of a tolerance. Solutions gain most: each is several times as long as the next.
+SOLVED, ALONG_RAYS = 0.5, 0.5
+FINEST = 128  # directions of the plan "finest"
 
 
 def marched_multiple(
@@ -50,7 +54,8 @@ def marched_multiple(
     scattering
         "multiple", or light that was solved before for this cloud.
     suns, medium, ambient, mixing, tolerance, background, observe, camera, volumes
-        As `marched`; half of the tolerance goes to the solution.
+        As `marched`; of the tolerance half goes to the solution, and a quarter each to
+        the light that was scattered once and to that which was scattered more often.
 
     Returns
     -------
@@ -87,14 +92,24 @@ def marched_multiple(
         ),
         ambient=None,
         mixing=mixing,
-        tolerance=0.5 * tolerance,
+        tolerance=0.5 * ALONG_RAYS * tolerance,
         observe=observe,
         camera=camera,
         volumes=volumes,
         shape=shape,
     )
     # 2. Light that was scattered more often.
-    radiance = found.radiance + glow(cloud, origins, directions, light, tolerance)
+    rows = (camera.height, camera.width) if camera is not None else (1, len(origins))
+    glowing, told = glow_within(
+        cloud,
+        origins,
+        directions,
+        light,
+        0.5 * ALONG_RAYS * tolerance,
+        rows=rows,
+        observe=observe,
+    )
+    radiance = found.radiance + glowing
     # 3. What is seen through the cloud; outside light of the forward peak goes with it.
     through = found.transmittance ** (kept[:1] if grey else kept)
     if ambient is not None:
@@ -107,8 +122,17 @@ def marched_multiple(
     sweeps = " + ".join(str(count) for count in light.iterations)
     state = "" if light.converged else f"; not converged, residual {light.residual:.2g}"
     note = f"scattered light: {sweeps} sweeps, voxels {W} x {H} x {D}{state}"
+    told = (*found.skipped, *told)
+    if tolerance > 0.0 and not isinstance(scattering, ScatteredLight):
+        plan = plan_for(SOLVED * tolerance, suns, medium, cloud)
+        if plan != PLANS["finest"]:
+            left = FINEST - len(light.solutions[0].level.directions.vectors)
+            what, bound = "directions of the finest solution", SOLVED * tolerance
+            told += (Skipped("light", what, left, FINEST, bound, how="measured"),)
     notes = (*found.notes, note)
-    return replace(found, radiance=radiance, transmittance=through, notes=notes)
+    return replace(
+        found, radiance=radiance, transmittance=through, skipped=told, notes=notes
+    )
 
 
 def lit_for(
@@ -127,7 +151,7 @@ def lit_for(
             medium=medium,
             sky=ambient,
             ground=ambient,
-            tolerance=0.5 * tolerance,
+            tolerance=SOLVED * tolerance,
         )
     light = scattering
     same = (

@@ -14,11 +14,12 @@ from typing import Annotated, Literal
 import numpy as np
 
 from refcloud.checking import check_fields
+from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Range
 from refcloud.optics import Medium, Sun, phase
 from refcloud.transport.directions import DirectionCount
 
-GradeName = Literal["quick", "standard", "reference", "fine", "finest"]
+GradeName = Literal["quick", "standard", "reference", "fine", "finer", "finest"]
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,9 @@ PLANS: dict[str, Plan] = {
     "standard": Plan((*START, Stage(26, 0, 2), Stage(50, 0, 1)), depth=0.3),
     "reference": Plan((*START, Stage(50, 0, 60), Stage(128, 0, 1))),
     "fine": Plan((*START, Stage(50, 0, 60, 2e-4), Stage(128, 0, 60, 2e-4))),
+    "finer": Plan(
+        (*START, Stage(26, 0, 100, 2e-6), Stage(128, 0, 100, 2e-6)), double=True
+    ),
     "finest": Plan(
         (
             Stage(26, 2, 500, 1e-7),
@@ -89,15 +93,26 @@ PLANS: dict[str, Plan] = {
 }
 
 # Largest error of a plan's picture against "finest", as a share of what the suns could
-# send at most: worst seen on 27 clouds, suns and lobes, 32 voxels' edge, times 1.5.
-# Beyond `BLUNTEST` the lobe is too narrow for 50 directions: a sun behind the cloud
-# would show it.
-ERRORS = {"quick": 0.05, "standard": 0.022, "reference": 0.0032, "fine": 1.4e-4}
+# send at most: at least the first number, and the second times the optical depth of the
+# thickest voxel, in which light has farther to wander. Times 1.5 they are the worst
+# seen: the first on 27 clouds, suns and lobes of 32 voxels' edge at a depth of 0.25 in a
+# voxel; the second on 75 generated ones of 6 to 20 voxels' edge at depths of 0.03 to
+# 300. Beyond `BLUNTEST` the lobe is too narrow for 50 directions: a sun behind the
+# cloud would show it.
+ERRORS = {
+    "quick": (0.05, 0.15),
+    "standard": (0.022, 0.1),
+    "reference": (0.0032, 0.0045),
+    "fine": (1.4e-4, 7.5e-4),
+    "finer": (2e-6, 7.5e-6),
+}
 BLUNTEST = 0.6
 FEW = ("quick", "standard")
 
 
-def plan_for(tolerance: float, suns: tuple[Sun, ...], medium: Medium) -> Plan:
+def plan_for(
+    tolerance: float, suns: tuple[Sun, ...], medium: Medium, grid: VoxelGrid
+) -> Plan:
     """Choose the cheapest plan whose measured error a tolerance allows.
 
     The error counts against "finest". That is itself off by the voxels: at an optical
@@ -107,8 +122,10 @@ def plan_for(tolerance: float, suns: tuple[Sun, ...], medium: Medium) -> Plan:
     g = medium.g if medium.phase == "hg" else 0.0
     peak = float(phase(medium, np.array(1.0 if g >= 0.0 else -1.0)))
     most = peak * sum(float(sun.irradiance.max()) for sun in suns)
-    for name, error in ERRORS.items():
-        if error * max(most, 1.0) <= tolerance:
+    thickest = float(medium.sigma_t_rgb.max() * grid.density.max())
+    depth = thickest * float(cell_size(grid).max())
+    for name, (least, by_depth) in ERRORS.items():
+        if max(least, by_depth * depth) * max(most, 1.0) <= tolerance:
             if name not in FEW or abs(g) <= BLUNTEST:
                 return PLANS[name]
     return PLANS["finest"]

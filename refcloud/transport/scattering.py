@@ -139,11 +139,11 @@ def scattered_light(
     True
     """
     suns = (suns,) if isinstance(suns, Sun) else suns
+    refuse_unbounded(grid, medium)
     if isinstance(plan, str):
         plan = PLANS[plan]
     elif plan is None:
-        plan = plan_for(tolerance, suns, medium)
-    refuse_unbounded(grid, medium)
+        plan = plan_for(tolerance, suns, medium, grid)
     above, below = (DARK if c is None else np.asarray(c) for c in (sky, ground))
     # 1. Cut the cloud out, and let the suns shine on it.
     kinds, channels = cases_of(medium, suns, above, below)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from refcloud.bench.scattering import SUN, apart, lumpy, view
+from refcloud.cloudmap import VoxelGrid
 from refcloud.march import integrate
 from refcloud.optics import Medium, Sun, phase
 from refcloud.transport import PLANS, scattered_light, trace_paths
@@ -20,12 +21,21 @@ def picture(grid, sun: Sun, medium: Medium, plan: str) -> np.ndarray:
 
 def test_a_tolerance_takes_the_cheapest_plan_that_keeps_it() -> None:
     medium, sun = Medium(1.0, phase="isotropic"), (Sun([0, 1, 0]),)
-    chosen = [plan_for(t, sun, medium) for t in (0.0, 1e-3, 0.01, 0.03, 0.06)]
-    assert chosen == [
-        PLANS[name] for name in ("finest", "fine", "reference", "standard", "quick")
-    ]
+    thin, thick = (cube(8, edge) for edge in (1.0, 8.0))  # depth 1/8 and 1 in a voxel
+    tolerances = (0.0, 1e-5, 1e-3, 0.01, 0.03, 0.06)
+    for grid, expected in (
+        (thin, ("finest", "finer", "fine", "reference", "standard", "quick")),
+        (thick, ("finest", "finer", "fine", "reference", "reference", "reference")),
+    ):
+        chosen = [plan_for(t, sun, medium, grid) for t in tolerances]
+        assert chosen == [PLANS[name] for name in expected]
     narrow = Medium(1.0, g=0.85, phase="hg")
-    assert plan_for(1.0, sun, narrow) == PLANS["reference"]
+    assert plan_for(1.0, sun, narrow, thin) == PLANS["reference"]
+
+
+def cube(n: int, edge: float) -> VoxelGrid:
+    """Fill a cube of that edge."""
+    return VoxelGrid(np.ones((n, n, n)), np.zeros(3), np.full(3, edge))
 
 
 @pytest.mark.slow
@@ -39,7 +49,7 @@ def test_plans_keep_their_errors(seed: int, sun: tuple, g: float) -> None:
     medium = Medium(4.0, g=g, phase="hg")
     exact = picture(grid, light, medium, "finest")
     most = float(phase(medium, np.array(1.0))) * float(light.irradiance.max())
-    for name, error in ERRORS.items():
+    for name, (error, _) in ERRORS.items():
         if name not in FEW or g <= 0.6:
             off = np.abs(picture(grid, light, medium, name) - exact).max()
             assert off <= error * max(most, 1.0), name
