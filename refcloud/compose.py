@@ -20,7 +20,10 @@ from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky, clear_sky
 
-LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
+# Share of the tolerance that pass 1 gets; pass 2 has more to save, and gets what pass 1
+# does not use: where balls take turns that is all.
+LIGHT = 0.25
+WHITE = "displayed white"  # the unit of errors of a picture
 
 
 def passes_of(
@@ -97,7 +100,7 @@ def draw_layers(
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     for layer in layers:
         share = tolerance / len(layers)
-        lit = layer.lit
+        lit, left = layer.lit, (1.0 - LIGHT) * share
         if lit is None:
             lit = light_pass(
                 layer.balls,
@@ -107,13 +110,16 @@ def draw_layers(
                 tolerance=LIGHT * share,
                 observe=observe,
             )
+            if backend == "numpy":  # where every error is told
+                used = sum(r.bound for r in lit.skipped if r.unit == WHITE)
+                left = max(left, share - used)
         clock.stop("light")
         drawn, rows = eye_pass(
             lit,
             camera,
             background=None if behind is None else rgba[..., :3],
             haze=layer.haze,
-            tolerance=(1.0 - LIGHT) * share,
+            tolerance=left,
             seed=seed,
             observe=observe,
         )
@@ -138,7 +144,7 @@ def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
     for row in rows:
         old = sums.get((row.stage, row.what))
         if old is not None:
-            adds = row.unit == "displayed white"
+            adds = row.unit == WHITE
             bound = old.bound + row.bound if adds else max(old.bound, row.bound)
             row = dataclasses.replace(
                 row, skipped=old.skipped + row.skipped, of=old.of + row.of, bound=bound

@@ -15,7 +15,7 @@ from refcloud.cli.outputs import ready, say
 from refcloud.cli.parser import Command
 from refcloud.refusal import complaint
 
-ABOUT = "Measure run time against error, beside other libraries where installed."
+ABOUT = "Measure run time against error; without a name list what can be measured."
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,13 @@ class Measurement:
         Small arrays and few rounds, for a look at the table.
     json
         Rows for machines instead of a table.
+    peers
+        Other libraries and OpenGL as well, those that are installed.
     """
 
     quick: bool = False
     json: bool = False
+    peers: bool = False
 
 
 OPTIONS = options_of(Measurement)
@@ -51,7 +54,7 @@ NAMES = (*bench.SUBJECTS, STABILITY)
 def command() -> Command:
     """Give the command's argument and options."""
     made = Command("bench", ABOUT)
-    made.argument("WHAT", "what is measured: " + ", ".join(NAMES))
+    made.argument("WHAT", "what is measured: " + ", ".join(NAMES), optional=True)
     made.group("the measurement", "", (*OPTIONS, PLOT))
     return made
 
@@ -59,6 +62,10 @@ def command() -> Command:
 def run(words: Sequence[str]) -> int:
     """Measure, and print the rows."""
     given = command().parse(words)
+    if not given.arguments:
+        for name, what in subjects().items():
+            say(f"{name:12}  {what}")
+        return 0
     (name,) = given.arguments
     if name not in NAMES:
         expected = "one of " + ", ".join(NAMES)
@@ -69,7 +76,7 @@ def run(words: Sequence[str]) -> int:
     if name == STABILITY:
         return _stability(how, figure)
     subject = bench.SUBJECTS[name]
-    rows = bench.run(subject, how.quick)
+    rows = bench.run(subject, how.quick, how.peers)
     if how.json:
         say(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))
     else:
@@ -77,6 +84,12 @@ def run(words: Sequence[str]) -> int:
     if figure is not None:
         say(str(bench.plot(subject, rows, figure)))
     return 0
+
+
+def subjects() -> dict[str, str]:
+    """Say in a line what each name measures."""
+    found = {name: subject.title for name, subject in bench.SUBJECTS.items()}
+    return {**found, STABILITY: "where each algorithm keeps its digits: errors alone"}
 
 
 def _stability(how: Measurement, figure: Path | None) -> int:

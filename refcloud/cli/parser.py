@@ -56,6 +56,7 @@ class Command:
         self.name = f"refcloud {name}"
         self._options: dict[str, Option] = {}
         self._arguments: list[str] = []
+        self._optional = 0  # of the last ones
         self._parser = _Arguments(
             prog=self.name,
             description=about.replace("%", "%%"),
@@ -69,9 +70,10 @@ class Command:
             self._flags |= {"-o", OUTPUT}
             self._parser.add_argument("-o", OUTPUT, metavar="FILE", help=output)
 
-    def argument(self, name: str, text: str) -> None:
-        """Add an argument that must be given."""
+    def argument(self, name: str, text: str, optional: bool = False) -> None:
+        """Add an argument that must be given, or may be as the last."""
         self._arguments.append(name)
+        self._optional += optional
         self._parser.add_argument(name, nargs="?", help=text)
 
     def group(self, title: str, about: str, options: Iterable[Option]) -> None:
@@ -130,7 +132,7 @@ class Command:
 
     def _check_arguments(self, arguments: list[str]) -> None:
         names = self._arguments
-        if len(arguments) < len(names):
+        if len(arguments) < len(names) - self._optional:
             missing = names[len(arguments)]
             advice = f"see {self.name} --help"
             raise ValueError(complaint(missing, "a name", "none", advice))

@@ -9,7 +9,6 @@ sample can miss what lies beside it: the margins are those that generated scenes
 from __future__ import annotations
 
 import functools
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

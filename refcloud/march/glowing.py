@@ -17,12 +17,14 @@ from refcloud.march.sampling import CHECKED, edge_rays
 from refcloud.noise import uniform
 from refcloud.transport import ScatteredLight
 
-# Each halves the last: its error is a quarter of that one's.
+# Strides err most, and fall by half each time: their error is a quarter of the last's.
 WAYS = (
     Way(1.0, 0.3),
-    Way(0.5, 0.15),
-    Way(0.25, 0.075),
-    Way(0.125, 0.0375),
+    Way(0.5, 0.3),
+    Way(0.25, 0.15),
+    Way(0.125, 0.15),
+    Way(0.0625, 0.075),
+    Way(0.03125, 0.0375),
 )
 NEXT = 0.2  # share of a way's error that the next one has at best
 

@@ -95,8 +95,8 @@ PLANS: dict[str, Plan] = {
 # Largest error of a plan's picture against "finest", as a share of what the suns could
 # send at most: at least the first number, and the second times the optical depth of the
 # thickest voxel, in which light has farther to wander. Times 1.5 they are the worst
-# seen: the first on 27 clouds, suns and lobes of 32 voxels' edge at a depth of 0.25 in a
-# voxel; the second on 75 generated ones of 6 to 20 voxels' edge at depths of 0.03 to
+# seen: the first on 27 clouds, suns and lobes of 32 voxels' edge at a depth of 0.25 in
+# a voxel; the second on 79 generated ones of 6 to 20 voxels' edge at depths of 0.03 to
 # 300. Beyond `BLUNTEST` the lobe is too narrow for 50 directions: a sun behind the
 # cloud would show it.
 ERRORS = {
