@@ -1,6 +1,7 @@
 """refcloud: a teaching reference for clouds, from noise to picture, in numpy."""
 
 from refcloud import scenes
+from refcloud.animation import Moves, animate
 from refcloud.camera import Camera, OrthographicCamera
 from refcloud.cloudmap import VoxelGrid, generate, load_voxels, save_voxels
 from refcloud.conventions import Skipped
@@ -40,12 +41,14 @@ __all__ = [
     "Look",
     "Medium",
     "Metaballs",
+    "Moves",
     "OrthographicCamera",
     "Picture",
     "Skipped",
     "Sky",
     "Sun",
     "VoxelGrid",
+    "animate",
     "approximate",
     "choose_level",
     "clear_sky",

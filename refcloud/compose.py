@@ -67,6 +67,7 @@ def draw_layers(
     seed: int = 0,
     observe: Observer | None = None,
     backend: Backend = "numpy",
+    kept: dict[Any, Any] | None = None,
 ) -> Picture:
     """Draw clouds one over the other, the farthest first; each is lit by itself.
 
@@ -84,6 +85,9 @@ def draw_layers(
         Largest error of a channel; every layer gets an equal share.
     seed, observe, backend
         As `render`.
+    kept
+        Each layer's light by its number: what an earlier call put there is taken again
+        where it still holds, the rest is put there.
 
     Returns
     -------
@@ -98,7 +102,8 @@ def draw_layers(
     rgba = np.zeros((camera.height, camera.width, 4))
     if behind is not None:
         rgba[..., :3], rgba[..., 3] = behind, 1.0
-    for layer in layers:
+    kept = {} if kept is None else kept
+    for number, layer in enumerate(layers):
         share = tolerance / len(layers)
         lit, left = layer.lit, (1.0 - LIGHT) * share
         if lit is None:
@@ -108,11 +113,13 @@ def draw_layers(
                 medium=layer.medium,
                 look=layer.look,
                 tolerance=LIGHT * share,
+                earlier=kept.get(number),
                 observe=observe,
             )
             if backend == "numpy":  # where every error is told
                 used = sum(r.bound for r in lit.skipped if r.unit == WHITE)
                 left = max(left, share - used)
+            kept.setdefault(number, lit)
         clock.stop("light")
         drawn, rows = eye_pass(
             lit,

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any, Literal
 
 from refcloud.camera import AnyCamera
 from refcloud.checking import complaint
-from refcloud.conventions import Backend, Observer, Skipped
+from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Look
 from refcloud.lighting.look import LookName
@@ -17,7 +18,12 @@ from refcloud.optics import Medium, Sun
 
 @dataclass(frozen=True)
 class View:
-    """How a scene is to be drawn; what is None the scene chooses itself."""
+    """How a scene is to be drawn; what is None the scene chooses itself.
+
+    `time` is a coordinate of the scene's noise, in its own units; `offset` how far the
+    wind has carried what it carries, shape (3,), scene units. `kept` is a store for
+    what the next picture of the same scene may use again, with the same bits.
+    """
 
     width: int
     height: int
@@ -29,6 +35,9 @@ class View:
     seed: int = 0
     observe: Observer | None = None
     backend: Backend = "numpy"
+    time: float = 0.0
+    offset: Array | None = None
+    kept: dict[Any, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -39,6 +48,33 @@ class Model:
     notes: tuple[str, ...] = ()
     skipped: tuple[Skipped, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What of a scene can move, and after how much of it the scene is the same again.
+
+    Attributes
+    ----------
+    eye
+        Gives the scene's own camera; None where there is no eye.
+    suns
+        The scene's own suns; none where no sun shines.
+    turns
+        Whether the eye goes "around" its target, or turns "in place".
+    period
+        Time after which the scene repeats itself; infinite where it never does, None
+        where it knows no time.
+    repeats
+        Lengths along x, y and z after which wind brings the same again, for scenes that
+        read ``view.offset``; None where wind carries the eye the other way.
+    """
+
+    eye: Callable[[Model, View], AnyCamera] | None = None
+    suns: tuple[Sun, ...] = ()
+    turns: Literal["around", "in place"] = "around"
+    period: float | None = None
+    repeats: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -53,12 +89,15 @@ class Scene:
         Makes the clouds.
     draw
         Draws them.
+    motion
+        What of it can move; by default nothing.
     """
 
     name: str
     title: str
     model: Callable[[], Model]
     draw: Callable[[Model, View], Picture]
+    motion: Motion = Motion()
 
 
 # Names to scenes; each file of refcloud/scenes enters its own.

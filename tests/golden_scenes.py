@@ -18,6 +18,7 @@ from refcloud import (
     load_metaballs,
     render,
 )
+from refcloud.figure import find_figure
 from refcloud.raster import framebuffer, splat
 from refcloud.scenes import SCENES, Model, View
 
@@ -87,6 +88,11 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
             *("box", "faces", "quad", "lit", "background"),
         )
     },
+    **{
+        # So small that no word is written: fonts differ between versions of Pillow.
+        f"man-{number}": partial(find_figure(f"man-{number}").draw, VIEW)
+        for number in ("02", "03", "05")
+    },
     "man-04": partial(unfitted, "man-04"),
     "man-08": partial(fitted, "man-08", "man-08"),
     "man-09": partial(fitted, "man-09", "man-09"),
@@ -95,4 +101,9 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
     "man-14": partial(fitted, "man-14", "man-13"),
     "marched-map": marched_map,
     "multiple": partial(unfitted, "multiple", View(64, 48)),
+    **{
+        f"shader-{name}": partial(unfitted, f"shader-{name}", SMALL_VIEW)
+        for name in ("a", "b", "c", "d", "dome", "e", "fog", "lit")
+    },
+    "simple-sky": partial(unfitted, "simple-sky", SMALL_VIEW),
 }

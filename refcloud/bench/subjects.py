@@ -10,9 +10,11 @@ from refcloud.bench.march import MARCH
 from refcloud.bench.noise import NOISE
 from refcloud.bench.passes import EYEWARD, SUNWARD
 from refcloud.bench.scattering import SCATTERING
+from refcloud.bench.skies import SKIES
 from refcloud.bench.splat import SPLAT
 from refcloud.bench.subject import Subject
 from refcloud.bench.tolerance import TOLERANCE, WHOLE_SCENES
+from refcloud.bench.triangles import TRIANGLES
 
 SUBJECTS: dict[str, Subject] = {
     subject.name: subject
@@ -27,6 +29,8 @@ SUBJECTS: dict[str, Subject] = {
         SPLAT,
         MARCH,
         SCATTERING,
+        TRIANGLES,
+        SKIES,
         WHOLE_SCENES,
         TOLERANCE,
     )

@@ -20,6 +20,8 @@ COMMANDS = {
     "generate": "refcloud.cli.generate",
     "approximate": "refcloud.cli.approximate",
     "render": "refcloud.cli.render",
+    "figure": "refcloud.cli.figure",
+    "animate": "refcloud.cli.animate",
     "compare": "refcloud.cli.compare",
     "list": "refcloud.cli.scenes",
     "noise": "refcloud.cli.noise",

@@ -171,6 +171,8 @@ def _placeholder(kind: Any, beside: tuple[Any, ...]) -> str:
         return "NAME" if len(beside) == 1 else "|".join(typing.get_args(kind))
     if base is Array:
         limits = mark(kind, Range)
+        if size_of(kind) == 2:
+            return "FROM TO"
         colour = len(beside) > 1 or (limits and limits.unit.startswith("radiance"))
         return "R G B" if colour else "X Y Z"
     return base.__name__.upper()

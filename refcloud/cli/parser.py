@@ -56,7 +56,7 @@ class Command:
         self.name = f"refcloud {name}"
         self._options: dict[str, Option] = {}
         self._arguments: list[str] = []
-        self._optional = 0  # of the last ones
+        self._optional = 0
         self._parser = _Arguments(
             prog=self.name,
             description=about.replace("%", "%%"),
@@ -70,8 +70,8 @@ class Command:
             self._flags |= {"-o", OUTPUT}
             self._parser.add_argument("-o", OUTPUT, metavar="FILE", help=output)
 
-    def argument(self, name: str, text: str, optional: bool = False) -> None:
-        """Add an argument that must be given, or may be as the last."""
+    def argument(self, name: str, text: str, *, optional: bool = False) -> None:
+        """Add an argument; one that may be left out stands after all others."""
         self._arguments.append(name)
         self._optional += optional
         self._parser.add_argument(name, nargs="?", help=text)
@@ -109,7 +109,10 @@ class Command:
         """
         arguments, flags = self._sorted(list(words))
         if not set(HELP).isdisjoint(flags):
-            self._parser.usage = " ".join([self.name, *self._arguments, "[options]"])
+            must = len(self._arguments) - self._optional
+            names = self._arguments[:must]
+            names += [f"[{name}]" for name in self._arguments[must:]]
+            self._parser.usage = " ".join([self.name, *names, "[options]"])
             print(self._parser.format_help(), end="")
             raise SystemExit(0)
         spaced, _ = self._parser.parse_known_args(flags)

@@ -27,7 +27,16 @@ class Stages:
 
     def watch(self, name: str, value: Any) -> None:
         """Take note of an intermediate; the library's functions call this."""
-        self._latest = name
+        self._latest = f"{name} done"
+
+    def count(self, done: int, of: int, left: float) -> None:
+        """Take note of how many parts are done, and of the seconds that are left."""
+        minutes, seconds = divmod(round(left), 60)
+        self._latest = f"{done} of {of}, {minutes}:{seconds:02} left"
+
+    def part(self, done: int, of: int) -> None:
+        """Take note of how many parts are done."""
+        self._latest = f"{done} of {of}"
 
     @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -50,7 +59,7 @@ class Stages:
         while not done.wait(pause):
             passed += pause
             pause = PATIENCE if terminal else passed
-            latest = f", {self._latest} done" if self._latest else ""
+            latest = f", {self._latest}" if self._latest else ""
             line = f"refcloud: {name}, {passed:.0f} s{latest}"
             _write(CLEAR + line if terminal else line + "\n")
         if terminal and passed:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from refcloud.choices import framed
 from refcloud.cli.clouds import denser, describe, find, load
 from refcloud.cli.docstrings import parameter_texts, summary
 from refcloud.cli.options import Option, options_of
 from refcloud.cli.outputs import ready, report
-from refcloud.cli.parser import Command
+from refcloud.cli.parser import Command, Given
 from refcloud.cli.progress import Stages
 from refcloud.cli.setting import (
     CAMERA,
@@ -24,9 +25,10 @@ from refcloud.cli.setting import (
     size_for,
     suns_for,
 )
+from refcloud.cloudmap import VoxelGrid
 from refcloud.image import Picture
 from refcloud.march import Mixing
-from refcloud.metaballs import Levels, choose_level
+from refcloud.metaballs import Levels, Metaballs, choose_level
 from refcloud.refusal import complaint
 from refcloud.render import as_drawn, render
 
@@ -67,28 +69,69 @@ def command() -> Command:
     made.argument(
         "WHAT", "a scene (see refcloud list), metaballs or a cloud map (.npz)"
     )
-    made.group("the picture", "", OPTIONS)
+    add_groups(made, OPTIONS)
+    return made
+
+
+def add_groups(made: Command, options: Iterable[Option]) -> None:
+    """Add the options of pictures under their titles."""
+    made.group("the picture", "", options)
     made.group("the camera", TEXTS["camera"], CAMERA)
     made.group("the light", TEXTS["suns"], SUN)
     made.group("the cloud's medium", TEXTS["medium"], (*MEDIUM, *DENSITY))
     made.group("how marched light mixes", TEXTS["mixing"], MIXING)
     made.group("behind the cloud", "", BACKGROUND)
     made.group("the file", "", SAVING)
-    return made
 
 
 def run(words: Sequence[str]) -> int:
     """Render a cloud and write its picture."""
     given = command().parse(words)
     what = given.arguments[0]
-    is_scene = find(what)
-    behind = background_for(given.of(BACKGROUND))
-    chosen = {"tolerance": TOLERANCE, **given.of(OPTIONS), **behind}
-    size = size_for(chosen)
-    suns = suns_for(given.of(SUN), is_scene)
-    name = what if is_scene else Path(what).stem
+    name = what if find(what) else Path(what).stem
+    chosen = chosen_of(given)
     path = ready(given.named(f"{name}.png"), SUFFIXES)
     stages = Stages()
+    cloud, parts, notes = prepared(given, chosen, stages)
+    with stages.stage("render"):
+        picture = render(cloud, **parts, **chosen, observe=stages.watch)
+    # What the picture knows of its own stages says more than their sum.
+    stages.seconds.pop("render")
+    stages.seconds.update(picture.seconds)
+    with stages.stage("save"):
+        picture.save(path, **given.of(SAVING))
+    report([*notes, *picture.notes], picture.skipped, stages.line(), path)
+    return 0
+
+
+def chosen_of(given: Given) -> dict[str, Any]:
+    """Give the keywords of `render` that were typed as they are."""
+    behind = background_for(given.of(BACKGROUND))
+    return {"tolerance": TOLERANCE, **given.of(OPTIONS), **behind}
+
+
+def prepared(
+    given: Given, chosen: Mapping[str, Any], stages: Stages
+) -> tuple[Metaballs | VoxelGrid | str, dict[str, Any], list[str]]:
+    """Load what is drawn, and put together its camera, suns, medium and mixing.
+
+    Parameters
+    ----------
+    given
+        What was typed.
+    chosen
+        Of `chosen_of`.
+    stages
+        Times the loading.
+
+    Returns
+    -------
+    The cloud or the scene's name, further keywords of `render`, and what to say.
+    """
+    what = given.arguments[0]
+    is_scene = find(what)
+    size = size_for(chosen)
+    suns = suns_for(given.of(SUN), is_scene)
     if is_scene:
         cloud, notes = what, []
     else:
@@ -113,20 +156,10 @@ def run(words: Sequence[str]) -> int:
         cloud = denser(cloud, **scale)
     elif scale:
         raise ValueError(complaint("--density", "none beside a scene", "one"))
-    with stages.stage("render"):
-        picture = render(
-            cloud,
-            camera=camera,
-            suns=suns,
-            medium=medium,
-            mixing=Mixing(**mixing) if mixing else None,
-            **chosen,
-            observe=stages.watch,
-        )
-    # What the picture knows of its own stages says more than their sum.
-    stages.seconds.pop("render")
-    stages.seconds.update(picture.seconds)
-    with stages.stage("save"):
-        picture.save(path, **given.of(SAVING))
-    report([*notes, *note, *picture.notes], picture.skipped, stages.line(), path)
-    return 0
+    parts = {
+        "camera": camera,
+        "suns": suns,
+        "medium": medium,
+        "mixing": Mixing(**mixing) if mixing else None,
+    }
+    return cloud, parts, [*notes, *note]

@@ -55,7 +55,9 @@ def _wanted(kind: Any) -> str:
     """Say in words what a kind of value is typed as."""
     if base_of(kind) is Literal:
         return " or ".join(kind.__args__)
-    return "three numbers" if base_of(kind) is Array else "a number"
+    if base_of(kind) is not Array:
+        return "a number"
+    return "two numbers" if size_of(kind) == 2 else "three numbers"
 
 
 def _numbers(words: list[str], kind: Any) -> Any:

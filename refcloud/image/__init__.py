@@ -1,5 +1,6 @@
 """Pictures: linear light, sRGB codes, PNG files, and how far two pictures differ."""
 
+from refcloud.image.animation import write_animation
 from refcloud.image.difference import (
     Comparison,
     compare_codes,
@@ -31,5 +32,6 @@ __all__ = [
     "srgb_encode",
     "to_codes",
     "tone_shoulder",
+    "write_animation",
     "write_png",
 ]

@@ -121,22 +121,39 @@ def _check_png(path: str | Path, data: bytes) -> bool:
     """Refuse what is not a whole PNG of 8 bits; tell whether it has an alpha."""
     if not data.startswith(SIGNATURE):
         raise ValueError(f"{path}: expected a PNG file, got another kind")
-    chunks = list(_chunks(path, data))
-    if chunks[0][0] != b"IHDR" or len(chunks[0][1]) != 13:
+    found = list(chunks(path, data))
+    if found[0][0] != b"IHDR" or len(found[0][1]) != 13:
         raise ValueError(_damaged(path, "no header"))
-    if sum(name == b"IHDR" for name, _ in chunks) > 1:
+    if sum(name == b"IHDR" for name, _ in found) > 1:
         raise ValueError(_damaged(path, "two headers"))
-    if chunks[-1][0] != b"IEND":
+    if found[-1][0] != b"IEND":
         raise ValueError(_damaged(path, "cut short"))
-    width, height, depth, kind = struct.unpack(">IIBB", chunks[0][1][:10])
+    width, height, depth, kind = struct.unpack(">IIBB", found[0][1][:10])
     check_size(path, width, height)
     if depth > 8:
         raise ValueError(f"{path}: expected at most 8 bits a channel, got {depth}")
-    return kind in (GREY_ALPHA, RGB_ALPHA) or any(n == b"tRNS" for n, _ in chunks)
+    return kind in (GREY_ALPHA, RGB_ALPHA) or any(n == b"tRNS" for n, _ in found)
 
 
-def _chunks(path: str | Path, data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Walk the chunks (name, content) and compare each checksum."""
+def chunks(path: str | Path, data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Walk the chunks (name, content) and compare each checksum.
+
+    Parameters
+    ----------
+    path
+        What a refusal calls the file.
+    data
+        All of its bytes.
+
+    Returns
+    -------
+    Name and content of each chunk, up to the last.
+
+    Raises
+    ------
+    ValueError
+        The file is cut short, or a checksum does not fit.
+    """
     at = len(SIGNATURE)
     while at < len(data):
         if at + 12 > len(data):

@@ -8,6 +8,7 @@ then looked at as well; where no way holds, every ray is exact.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Observer, Skipped
@@ -62,7 +63,8 @@ def glow_within(
     sample = _glowing(cloud, origins, directions, light)
     exact = glow(cloud, origins[sample], directions[sample], light, None)
     tried: dict[Way, float] = {}
-    found, rows_told = None, ()
+    found: Array | None = None
+    told: tuple[Skipped, ...] = ()
     for way in WAYS:
         # 2. A way on the sample: what it errs by, and what finer ones can hope for.
         some = glow(cloud, origins[sample], directions[sample], light, way)
@@ -81,7 +83,7 @@ def glow_within(
         bound = max(bound, MARGIN * worst)
         if bound <= tolerance:
             count = len(origins)
-            rows_told = (
+            told = (
                 Skipped(
                     "march",
                     "exact rays through solved light",
@@ -97,12 +99,12 @@ def glow_within(
         observe("errors of ways", tried)
     if found is None:
         found = glow(cloud, origins, directions, light, None)
-    return found, rows_told
+    return found, told
 
 
 def _glowing(
     cloud: VoxelGrid, origins: Array, directions: Array, light: ScatteredLight
-) -> Array:
+) -> NDArray[np.intp]:
     """Choose rays that show solved light, by a hash of their number."""
     drawn = np.argsort(uniform(np.arange(len(origins)), seed=1), kind="stable")
     chosen = drawn[:0]

@@ -55,6 +55,7 @@ PEAKS: dict[Gradients, dict[Fade, float]] = {
     "diagonals4": {"quintic": 1.0, "hermite": 1.0},
     "edges12": {"quintic": 1.047, "hermite": 1.0555},  # enclosed
     "corners8": {"quintic": 1.5, "hermite": 1.5},
+    "edges32": {"quintic": 1.565, "hermite": 1.575},  # enclosed
 }
 
 

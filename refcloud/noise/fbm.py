@@ -54,8 +54,8 @@ def fbm(
         Shape (..., 2), (..., 3) or (..., 4), in cells of the first octave, as the kind
         allows. NaN or infinity gives NaN.
     kind
-        Which noise. "value" is in space, "gradient" in the plane too, "simplex" in up
-        to four dimensions.
+        Which noise. "value" is in space, "gradient" and "simplex" in two to four
+        dimensions.
     time
         One more coordinate, the same for all points. None adds none (N24).
     seed

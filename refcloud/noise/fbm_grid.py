@@ -49,7 +49,7 @@ def fbm_grid(
     z
         Coordinates along a third axis. Without it the grid is a plane.
     kind
-        Which noise. "value" needs three coordinates, time among them; "simplex" takes
+        Which noise. "value" needs three coordinates, time among them; the others take
         z and time together.
     time
         One more coordinate, the same for all places. None adds none (N24).

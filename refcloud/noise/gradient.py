@@ -65,15 +65,17 @@ def gradient(
     Parameters
     ----------
     points
-        Shape (..., 2) or (..., 3), in lattice cells. NaN or infinity gives NaN.
+        Shape (..., 2), (..., 3) or (..., 4), in lattice cells. NaN or infinity gives
+        NaN.
     seed
         Which pattern. Patterns of two seeds have nothing in common.
     fade
         How corners are blended. "quintic" has continuous curvature, "hermite" a
         continuous slope (N11, N12).
     gradients
-        Which set of gradients. None is "directions8" in the plane and "edges12" in
-        space; "diagonals4" and "corners8" are the others (N21).
+        Which set of gradients. None is "directions8" in the plane, "edges12" in space
+        and "edges32" in four dimensions; "diagonals4" and "corners8" are the others
+        (N21).
     period
         After how many cells the pattern repeats along each axis. None is 2^32.
     hash
@@ -98,8 +100,10 @@ def gradient(
     >>> gradient(np.zeros((4, 2, 3)), seed=7).shape
     (4, 2)
     """
-    name = _named(gradients, _dimensions(points, (2, 3)))
-    how = How(seed, fade, name, period, hash, dtype)
+    count = _dimensions(points, (2, 3, 4))
+    how = How(seed, fade, _named(gradients, count), period, hash, dtype)
+    if count == 4:  # 32 gradients make 1024 pairs: no byte holds their number
+        return _scattered(points, lambda axes: _by_corners(axes, how), dtype, period)
     box, room = _pair_box(points, how.lattice()), _Room()
     return _scattered(
         points,
@@ -128,7 +132,8 @@ def gradient_derivative(
     Parameters
     ----------
     points
-        Shape (..., 2) or (..., 3), in lattice cells. NaN or infinity gives NaN.
+        Shape (..., 2), (..., 3) or (..., 4), in lattice cells. NaN or infinity gives
+        NaN.
     seed
         Which pattern.
     fade
@@ -154,7 +159,7 @@ def gradient_derivative(
     >>> noise.shape, slope.shape
     ((4,), (4, 2))
     """
-    count = _dimensions(points, (2, 3))
+    count = _dimensions(points, (2, 3, 4))
     how = How(seed, fade, _named(gradients, count), period, hash, dtype)
     both = _scattered(
         points, lambda axes: _derivative(axes, how), dtype, period, 1 + count
@@ -210,6 +215,19 @@ def _gradient(
         pairs = box.at(cells, room)
     places = _places(columns, cells, how.dtype, room)
     return _paired(places, FADES[how.fade](places), pairs, how.rows(), room)
+
+
+def _by_corners(columns: Array, how: How) -> Numbers:
+    """Give gradient noise of any dimension: dots at the corners, blended by axes."""
+    slopes, offsets, fades = _corners(columns, how)
+    dot = slopes[0]
+    dot *= offsets[0]
+    for g, offset in zip(slopes[1:], offsets[1:], strict=True):
+        g *= offset
+        dot += g
+    for fade in fades[::-1]:
+        dot = _blended(dot, fade)
+    return dot
 
 
 def _derivative(columns: Array, how: How) -> list[Numbers]:

@@ -15,9 +15,9 @@ import numpy as np
 from refcloud.conventions import Array
 from refcloud.noise.directions import USUAL
 from refcloud.noise.gradient import How as GradientHow
-from refcloud.noise.gradient import _gradient
+from refcloud.noise.gradient import _by_corners, _gradient
 from refcloud.noise.gradient_grid import Layer, _fill
-from refcloud.noise.scattered import PERIOD, Dtype, Numbers
+from refcloud.noise.scattered import CHUNK, PERIOD, Dtype, Numbers
 from refcloud.noise.simplex import WRAP, _simplex
 from refcloud.noise.simplex_grid import simplex_grid
 from refcloud.noise.value import _value
@@ -82,16 +82,32 @@ def _gradient_points(
 ) -> Numbers:
     name = USUAL[len(columns)]
     how = GradientHow(seed, "quintic", name, period, "mixed", dtype)
-    return _gradient(columns, how)
+    return _by_corners(columns, how) if len(columns) == 4 else _gradient(columns, how)
 
 
 def _fill_gradient(out: Numbers, octaves: list[Octave], absolute: bool) -> None:
+    if len(octaves[0].lines) == 4:
+        _fill_four(out, octaves, absolute)
+        return
     layers = []
     for octave in octaves:
         name, period = USUAL[len(octave.lines)], octave.period
         how = GradientHow(octave.seed, "quintic", name, period, "mixed", _dtype(out))
         layers.append(Layer(tuple(octave.lines), how, octave.scale))
     _fill(out, layers, absolute)
+
+
+def _fill_four(out: Numbers, octaves: list[Octave], absolute: bool) -> None:
+    """Sum octaves of four dimensions point by point: they have no grid form."""
+    out[...] = 0.0
+    for octave in octaves:
+        mesh = np.meshgrid(*octave.lines[::-1], indexing="ij")
+        columns = np.stack([axis.ravel() for axis in mesh[::-1]])
+        for first in range(0, columns.shape[1], CHUNK):
+            part = columns[:, first : first + CHUNK]
+            values = _gradient_points(part, octave.seed, octave.period, _dtype(out))
+            flat = out.reshape(-1)[first : first + CHUNK]
+            flat += octave.scale * (np.abs(values) if absolute else values)
 
 
 def _simplex_points(
@@ -117,7 +133,7 @@ def _dtype(out: Numbers) -> Dtype:
 
 KINDS: dict[KindName, Kind] = {
     "value": Kind((3,), True, PERIOD, _value_points, _fill_value),
-    "gradient": Kind((2, 3), True, PERIOD, _gradient_points, _fill_gradient),
+    "gradient": Kind((2, 3, 4), True, PERIOD, _gradient_points, _fill_gradient),
     "simplex": Kind((2, 3, 4), False, float(WRAP), _simplex_points, _fill_simplex),
 }
 

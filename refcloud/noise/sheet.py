@@ -11,6 +11,8 @@ rand() % 5000 picks a part of one pattern, for r + 1 moves the numbers of r by (
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import Annotated
 
 import numpy as np
@@ -21,6 +23,7 @@ from refcloud.noise.sheet_map import (
     Grey,
     Numbers,
     Side,
+    _neighbours,
     _some,
     sheet_map,
     wrapped_bilinear,
@@ -29,6 +32,7 @@ from refcloud.noise.sheet_map import (
 Octaves = Annotated[int, Range(1, 16)]
 
 WHITE = 255.0  # what the filter approaches
+AT_ONCE = 1 << 13  # samples: what one pass leaves, the next finds in the cache
 COVER, SHARPNESS = 20.0, 0.95  # the document's filter
 
 
@@ -60,10 +64,48 @@ def overlap_octaves(values: Grey, size: Side = 256, *, octaves: Octaves = 4) -> 
     480.0
     """
     values = _some(values)
+    total = np.zeros((size, size))
+    for octave in range(octaves):
+        # 1. An octave is one blown-up map, laid beside itself 2^o times both ways.
+        #    Where the size is a power of two, places repeat exactly: one is enough.
+        tiles = 2**octave if size & (size - 1) == 0 and size >= 2**octave else 1
+        side = size // tiles
+        tiled = total.reshape(tiles, side, tiles, side)
+        # 2. Some rows at a time are added to all of their places at once.
+        for rows, part in _blown_up(values, 2.0**octave / size, side):
+            part *= 0.5**octave
+            tiled[:, rows] += part[:, None]
+    return total
+
+
+def _blown_up(values: Array, scale: float, side: int) -> Iterator[tuple[slice, Array]]:
+    """Give the first samples of a map seen `scale` maps apart, some rows at a time.
+
+    Every row has the same places between the same columns: the map is interpolated
+    along x once, for its few rows, and then between them. The numbers of
+    `wrapped_bilinear`, and their order.
+    """
+    height, width = values.shape
+    along = np.arange(side) * scale  # in maps, 1 is a whole one
+    x0, x1, tx = _neighbours(along * width, width)
+    y0, _, ty = _neighbours(along * height, height)
+    lines = values[:, x0] + tx * (values[:, x1] - values[:, x0])  # (H, side)
+    rise = np.roll(lines, -1, axis=0) - lines  # to the line above
+    step = max(1, AT_ONCE // side)
+    for first in range(0, side, step):
+        rows = slice(first, first + step)
+        part, change = lines.take(y0[rows], 0), rise.take(y0[rows], 0)
+        change *= ty[rows, None]
+        part += change
+        yield rows, part
+
+
+def _literal(values: Array, size: int, octaves: int) -> Array:
+    """Sum octaves as the formula says it: each interpolated at every sample."""
     height, width = values.shape
     total = np.zeros((size, size))
     for octave in range(octaves):
-        along = np.arange(size) * (2.0**octave / size)  # in maps, 1 is a whole one
+        along = np.arange(size) * (2.0**octave / size)
         rows = along[:, np.newaxis] * height
         total += wrapped_bilinear(values, along * width, rows) / 2.0**octave
     return total
@@ -101,8 +143,21 @@ def exponential_filter(
     >>> exponential_filter([235.0, 236.0]).round(9)
     array([ 0.  , 12.75])
     """
-    c = np.maximum(values - (WHITE - cover), 0.0)
-    return WHITE - WHITE * sharpness**c
+    return _filter(values.copy(), cover, sharpness)
+
+
+def _filter(c: Array, cover: float, sharpness: float) -> Array:
+    """Filter in place."""
+    c -= WHITE - cover
+    np.maximum(c, 0.0, out=c)
+    if sharpness == 0.0:  # 0^0 is 1; its logarithm times 0 is nothing
+        return WHITE - WHITE * sharpness**c
+    # By the base's logarithm: numpy's power takes ten times as long as its exponential.
+    c *= math.log(sharpness)
+    np.exp(c, out=c)
+    c *= -WHITE
+    c += WHITE
+    return c
 
 
 @checked
@@ -150,4 +205,4 @@ def cloud_sheet(
     """
     small = sheet_map(map_size, seed=seed, numbers=numbers)
     total = overlap_octaves(small, size, octaves=octaves)
-    return exponential_filter(total, cover=cover, sharpness=sharpness)
+    return _filter(total, cover, sharpness)

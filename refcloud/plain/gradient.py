@@ -77,6 +77,8 @@ def peak(name: str, fade: str) -> float:
     """Give the bound that gradient noise is divided by."""
     if name == "edges12":
         return 1.047 if fade == "quintic" else 1.0555
+    if name == "edges32":
+        return 1.565 if fade == "quintic" else 1.575
     return {"directions8": HALF, "diagonals4": 1.0, "corners8": 1.5}[name]
 
 
@@ -101,7 +103,7 @@ def gradient_derivative(
     n = len(point)
     if not all(math.isfinite(c) for c in point):
         return math.nan, [math.nan] * n
-    name = gradients or {2: "directions8", 3: "edges12"}[n]
+    name = gradients or {2: "directions8", 3: "edges12", 4: "edges32"}[n]
     rows = gradient_set(name, dimensions=n)
     reduced = [math.fmod(c, period or 2**32) for c in point]
     cells = [math.floor(c) for c in reduced]

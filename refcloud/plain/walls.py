@@ -1,28 +1,34 @@
-"""Lines, triangles and the box around a cloud, one pixel at a time.
+"""Lines and the box around a cloud, one pixel at a time.
 
 Each function is the twin of the one of the same name in `refcloud.raster`. Pixels are
-asked one by one whether they belong to a line or a triangle, in whole numbers.
+asked one by one whether they belong to a line, in whole numbers.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from refcloud.plain.box import WALLS, box_lines, box_triangles
-from refcloud.plain.camera import Camera, Point, along, axes, between, cross, dot
+from refcloud.plain.camera import Camera, Point, axes, between, cross, dot
+from refcloud.plain.framebuffer import Rules, State
 from refcloud.plain.raster import Buffer, blend
+from refcloud.plain.triangles import Mesh, draw_triangles
+from refcloud.plain.window import (
+    SUBPIXEL,
+    Place,
+    in_window,
+    inside,
+    meeting,
+    to_camera,
+    to_subpixels,
+)
 
 Pixel = tuple[int, int]  # row, column
-Place = tuple[int, int]  # x, y in sub-pixels
 
-SUBPIXEL, GUARD = 256, 8192.0
+MIX = "SRC_ALPHA", "ONE_MINUS_SRC_ALPHA", "FUNC_ADD"
+EVERY = True, True, True, True
+OVER = State(Rules(MIX, MIX, (0, 0, 0, 0)), EVERY, None, None, False)
 UNIT, HAIR = 1 << 200, 1 << 100  # a sub-pixel; the hair is 2^-100 of it, squared 2^-200
-
-
-def to_subpixels(x: float, y: float) -> Place:
-    """Round a place to whole sub-pixels."""
-    return math.floor(x * SUBPIXEL + 0.5), math.floor(y * SUBPIXEL + 0.5)
 
 
 def meets_diamond(a: Place, b: Place, row: int, column: int) -> bool:
@@ -73,63 +79,6 @@ def line_pixels(
     return line_between(a, b, width, height, thickness)
 
 
-def holds(corners: Sequence[Place], row: int, column: int) -> bool:
-    """Tell whether a triangle holds the centre of a pixel."""
-    x = column * SUBPIXEL + SUBPIXEL // 2
-    y = row * SUBPIXEL + SUBPIXEL // 2
-    (ax, ay), (bx, by), (cx, cy) = corners
-    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-    if area == 0:
-        return False
-    if area < 0:
-        (bx, by), (cx, cy) = (cx, cy), (bx, by)
-    for px, py, qx, qy in ((ax, ay, bx, by), (bx, by, cx, cy), (cx, cy, ax, ay)):
-        side = (qx - px) * (y - py) - (qy - py) * (x - px)
-        left_or_upper = qy < py or (qy == py and qx > px)
-        if side < 0 or (side == 0 and not left_or_upper):
-            return False
-    return True
-
-
-def triangle_pixels(
-    corners: Sequence[Sequence[float]], width: int, height: int
-) -> list[Pixel]:
-    """List the pixels of a triangle, row by row."""
-    places = [to_subpixels(*corner) for corner in corners]
-    everywhere = ((row, column) for row in range(height) for column in range(width))
-    return [pixel for pixel in everywhere if holds(places, *pixel)]
-
-
-def scale_of(camera: Camera) -> float:
-    """Give pixels per scene unit: at depth 1, or anywhere if orthographic."""
-    if camera.fov_y is None:
-        return camera.height / camera.height_of_view
-    return camera.height / (2.0 * math.tan(camera.fov_y / 2.0))
-
-
-def to_camera(camera: Camera, point: Point) -> Point:
-    """Give right, up and depth."""
-    offset = between(camera.eye, point)
-    right, up, back = axes(camera)
-    return dot(offset, right), dot(offset, up), -dot(offset, back)
-
-
-def inside(camera: Camera, place: Point, plane: int, near: float) -> float:
-    """Say how far inside a cutting plane a place of the camera's frame lies."""
-    right, up, depth = place
-    if plane == 0:
-        return depth - near
-    across, size = (right, camera.width) if plane < 3 else (up, camera.height)
-    far = (0.5 * size + GUARD) * (1.0 if camera.fov_y is None else depth)
-    scaled = scale_of(camera) * across
-    return far + scaled if plane % 2 else far - scaled
-
-
-def meeting(a: Point, b: Point, inside_a: float, inside_b: float) -> Point:
-    """Give the place between two points where a plane lies."""
-    return along(a, (inside_a / (inside_a - inside_b), between(a, b)))
-
-
 def cut_line(camera: Camera, a: Point, b: Point, near: float) -> list[Point]:
     """Cut a line by the near plane and by four far beside the window."""
     for plane in range(5):
@@ -141,31 +90,6 @@ def cut_line(camera: Camera, a: Point, b: Point, near: float) -> list[Point]:
         elif in_b < 0.0:
             b = meeting(a, b, in_a, in_b)
     return [a, b]
-
-
-def cut_polygon(camera: Camera, corners: list[Point], near: float) -> list[Point]:
-    """Cut a convex polygon by the same planes."""
-    for plane in range(5):
-        kept = []
-        for k, here in enumerate(corners):
-            before = corners[k - 1]
-            in_before = inside(camera, before, plane, near)
-            in_here = inside(camera, here, plane, near)
-            if in_before < 0.0 <= in_here:
-                kept.append(meeting(here, before, in_here, in_before))
-            elif in_here < 0.0 <= in_before:
-                kept.append(meeting(before, here, in_before, in_here))
-            if in_here >= 0.0:
-                kept.append(here)
-        corners = kept
-    return corners
-
-
-def in_window(camera: Camera, place: Point, near: float) -> Place:
-    """Put a place of the camera's frame into the window."""
-    scale = scale_of(camera) / (1.0 if camera.fov_y is None else max(place[2], near))
-    x = camera.width / 2.0 + scale * place[0]
-    return to_subpixels(x, camera.height / 2.0 - scale * place[1])
 
 
 def paint(buffer: Buffer, pixels: Sequence[Pixel], color: Sequence[float]) -> None:
@@ -192,28 +116,6 @@ def draw_lines(
             paint(buffer, line_between(a, b, *size, thickness), color)
 
 
-def draw_triangles(
-    buffer: Buffer,
-    camera: Camera,
-    triangles: Sequence[Sequence[Point]],
-    color: Sequence[float],
-    near: float,
-) -> None:
-    """Cut, place and paint each triangle as a fan."""
-    for corners in triangles:
-        left = cut_polygon(camera, [to_camera(camera, c) for c in corners], near)
-        places = [in_window(camera, place, near) for place in left]
-        for k in range(1, len(places) - 1):
-            fan = [places[0], places[k], places[k + 1]]
-            pixels = [
-                (row, column)
-                for row in range(camera.height)
-                for column in range(camera.width)
-                if holds(fan, row, column)
-            ]
-            paint(buffer, pixels, color)
-
-
 def faces_away(camera: Camera, corners: Sequence[Point]) -> bool:
     """Tell whether a triangle turns its back on the eye."""
     a, b, c = corners
@@ -237,7 +139,11 @@ def draw_box(
     triangles = box_triangles(first, second)
     away = [faces_away(camera, triangle) for triangle in triangles]
     mine = [t for t, a in zip(triangles, away, strict=True) if a == (part == "behind")]
-    draw_triangles(buffer, camera, mine, wall_color, near)
+    corners = [corner for triangle in mine for corner in triangle]
+    faces = [(3 * k, 3 * k + 1, 3 * k + 2) for k in range(len(mine))]
+    mesh = Mesh(corners, faces, [()] * len(corners))
+    depths: list[list[float]] = []  # neither tested nor written
+    draw_triangles(buffer, depths, camera, mesh, lambda *_: wall_color, OVER, near)
     lines = []
     for a, b in box_lines(first, second):
         walls = [

@@ -6,76 +6,21 @@ in OpenGL's order. `clear` takes the same state, of which it honours scissor and
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated
 
 import numpy as np
 
-from refcloud.checking import check_fields, checked
+from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Shape
-from refcloud.raster.blending import blended_as
-from refcloud.raster.factors import Blending
 from refcloud.raster.formats import stored
 from refcloud.raster.framebuffer import (
-    CHANNELS,
     Framebuffer,
     Rgba,
     clipped,
     refuse_other_box,
     within,
 )
-
-DepthFunc = Literal[
-    "NEVER", "LESS", "EQUAL", "LEQUAL", "GREATER", "NOTEQUAL", "GEQUAL", "ALWAYS"
-]
-ColorMask = tuple[bool, bool, bool, bool]
-EVERY_CHANNEL: ColorMask = (True, True, True, True)
-
-# Whether a fragment passes: of (its depth, the buffer's).
-DEPTH_FUNCS: dict[str, Callable[[Any, Any], Any]] = {
-    "NEVER": lambda new, old: np.zeros_like(old, dtype=bool),
-    "LESS": lambda new, old: new < old,
-    "EQUAL": lambda new, old: new == old,
-    "LEQUAL": lambda new, old: new <= old,
-    "GREATER": lambda new, old: new > old,
-    "NOTEQUAL": lambda new, old: new != old,
-    "GEQUAL": lambda new, old: new >= old,
-    "ALWAYS": lambda new, old: np.ones_like(old, dtype=bool),
-}
-
-
-@dataclass(frozen=True)
-class State:
-    """Which operations fragments go through; all are off by default.
-
-    Attributes
-    ----------
-    blending
-        Factors and equations; None writes the new colour (glDisable of BLEND).
-    color_mask
-        Which of RGBA may be written (glColorMask).
-    scissor
-        Rows and columns outside which nothing is written, as slices with both ends;
-        they may leave the buffer (glScissor). None for everywhere.
-    depth_func
-        Which depths pass against the buffer's (glDepthFunc); None neither tests nor
-        writes depths (glDisable of DEPTH_TEST).
-    depth_mask
-        Whether depths may be written (glDepthMask).
-    """
-
-    blending: Blending | None = None
-    color_mask: ColorMask = EVERY_CHANNEL
-    scissor: tuple[slice, slice] | None = None
-    depth_func: DepthFunc | None = None
-    depth_mask: bool = True
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-        for part in self.scissor or ():
-            clipped("scissor", part, 1)
-
+from refcloud.raster.store import State, stored_in, write, written
 
 PLAIN = State()
 DepthOf = (
@@ -146,24 +91,7 @@ def draw_fragments(
     )
     source, depths = source[inner], depths[inner]
 
-    # 2. Depth test, and the depths of those that pass.
-    passed = np.ones(depths.shape, dtype=bool)
-    if state.depth_func is not None and buffer.depth is not None:
-        passed = DEPTH_FUNCS[state.depth_func](depths, buffer.depth[box])
-        if state.depth_mask:
-            buffer.depth[box][passed] = depths[passed]
-
-    # 3. Blend, and round to what the format holds.
-    pixels = buffer.pixels[box]
-    how = buffer.format, buffer.arithmetic
-    if state.blending is None:
-        colors = stored(source, buffer.format, arithmetic=buffer.arithmetic)
-    else:
-        colors = blended_as(source, pixels, state.blending, *how)
-
-    # 4. Write, channel by channel.
-    for channel in _written(state):
-        pixels[passed, channel] = colors[passed, channel]
+    write(stored_in(buffer), box, source, depths, state)
 
 
 @checked
@@ -208,7 +136,7 @@ def clear(
     box = scissored(state, slice(0, height), slice(0, width), height, width)
     if color is not None:
         kept = stored(color, buffer.format, arithmetic=buffer.arithmetic)
-        for channel in _written(state):
+        for channel in written(state):
             buffer.pixels[(*box, channel)] = kept[channel]
     if depth is not None and buffer.depth is not None and state.depth_mask:
         buffer.depth[box] = depth
@@ -245,8 +173,3 @@ def _common(one: slice, other: slice) -> slice:
     """Give what two slices share; an empty one where that is nothing."""
     first = max(one.start, other.start)
     return slice(first, max(first, min(one.stop, other.stop)))
-
-
-def _written(state: State) -> list[int]:
-    """List the channels that the colour mask lets by."""
-    return [channel for channel in range(CHANNELS) if state.color_mask[channel]]

@@ -22,15 +22,15 @@ from numpy.typing import NDArray
 from refcloud.camera import Camera, OrthographicCamera
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Shape
-from refcloud.raster.blending import Factor
-from refcloud.raster.framebuffer import Framebuffer, Rgba, Size
+from refcloud.raster.factors import Blending, Factor
+from refcloud.raster.framebuffer import CHANNELS, Framebuffer, Rgba, Size
+from refcloud.raster.meshes import WORLD
+from refcloud.raster.store import State, stored_in, write
 from refcloud.raster.window import (
     NEAR,
     SUBPIXEL,
-    WORLD,
     Near,
     Places,
-    blend_pixels,
     cut_line,
     planes_of,
     refuse_other_size,
@@ -202,10 +202,13 @@ def draw_lines(
     """
     refuse_other_size(buffer, camera)
     planes = planes_of(camera, near)
+    state = State(blending=Blending(src_factor, dst_factor))
+    store = stored_in(buffer)
     for ends in to_camera(camera, lines):
         cut = cut_line(ends, planes)
         if cut is None:
             continue
         place = snapped(camera, cut, near)
         found = pixels_between(place, camera.width, camera.height, thickness)
-        blend_pixels(buffer, *found, color, src_factor, dst_factor)
+        source = np.broadcast_to(color, (len(found[0]), CHANNELS))
+        write(store, found, source, None, state)

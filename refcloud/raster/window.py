@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import complaint
 from refcloud.conventions import Array, Range
-from refcloud.raster.blending import blended
-from refcloud.raster.framebuffer import CHANNELS, NOTHING, Framebuffer
+from refcloud.raster.framebuffer import CHANNELS, Framebuffer
 
 Places = NDArray[np.int64]  # in sub-pixels, y downward
 
@@ -28,7 +27,6 @@ SUBPIXEL = 256  # 8 bits, what graphics hardware has
 GUARD = 8192.0
 NEAR = 1e-3
 Near = Annotated[float, Range(1e-100, 1e100, "scene units")]
-WORLD = Range(-1e100, 1e100, "scene units")  # squares of such places are numbers
 
 
 def to_camera(camera: AnyCamera, points: Array) -> Array:
@@ -64,19 +62,20 @@ def scale_of(camera: AnyCamera) -> float:
     return camera.height / camera.height_of_view
 
 
-def planes_of(camera: AnyCamera, near: float) -> Array:
-    """Give the five planes that cut geometry, the near one first.
+def planes_of(camera: AnyCamera, near: float, far: float | None = None) -> Array:
+    """Give the planes that cut geometry, the near one first.
 
     Parameters
     ----------
     camera
         Pinhole or orthographic.
-    near
-        Depth of the near plane, scene units.
+    near, far
+        Depths of the near and the far plane, scene units; None for no far one.
 
     Returns
     -------
-    Shape (5, 4): a b c d, with a right + b up + c depth + d at least 0 inside.
+    Shape (5, 4) or (6, 4): a b c d, with a right + b up + c depth + d at least 0
+    inside.
     """
     scale = scale_of(camera)
     aside, above = 0.5 * camera.width + GUARD, 0.5 * camera.height + GUARD
@@ -93,6 +92,7 @@ def planes_of(camera: AnyCamera, near: float) -> Array:
             side(-scale, 0.0, aside),
             side(0.0, scale, above),
             side(0.0, -scale, above),
+            *([] if far is None else [[0.0, 0.0, -1.0, far]]),
         ]
     )
     # Only signs and shares matter; at most 1, they bring no overflow.
@@ -122,37 +122,6 @@ def cut_line(ends: Array, planes: Array) -> Array | None:
                 ends = ends.copy()
                 ends[end] = _meeting(ends[1 - end], ends[end], inside[[1 - end, end]])
     return ends
-
-
-def cut_polygon(corners: list[Array], planes: Array) -> list[Array]:
-    """Cut a convex polygon by planes: corners inside stay, edges end where they cross.
-
-    Parameters
-    ----------
-    corners
-        Right, up and depth of each, shape (3,); in order around the polygon.
-    planes
-        Shape (K, 4), from `planes_of`.
-
-    Returns
-    -------
-    Corners of what is left, in the same order; none where nothing is.
-    """
-    for plane in planes:
-        inside = [float(corner @ plane[:3] + plane[3]) for corner in corners]
-        kept: list[Array] = []
-        for k, corner in enumerate(corners):
-            before = k - 1
-            if (inside[before] < 0.0) != (inside[k] < 0.0):
-                # From the inner end on, whichever comes first: two triangles that share
-                # this edge cut it at the same place.
-                a, b = (k, before) if inside[before] < 0.0 else (before, k)
-                signed = np.array([inside[a], inside[b]])
-                kept.append(_meeting(corners[a], corners[b], signed))
-            if inside[k] >= 0.0:
-                kept.append(corner)
-        corners = kept
-    return corners
 
 
 def _meeting(inner: Array, outer: Array, inside: Array) -> Array:
@@ -209,30 +178,3 @@ def refuse_other_size(buffer: Framebuffer, camera: AnyCamera) -> None:
         got = f"shape {buffer.pixels.shape}"
         expected = f"shape {(*size, CHANNELS)}, the size of the camera's picture"
         raise ValueError(complaint("buffer", expected, got))
-
-
-def blend_pixels(
-    buffer: Framebuffer,
-    rows: NDArray[np.intp],
-    columns: NDArray[np.intp],
-    color: Array,
-    src_factor: str,
-    dst_factor: str,
-) -> None:
-    """Blend one colour into pixels, none of which comes twice.
-
-    Parameters
-    ----------
-    buffer
-        The framebuffer, written in place.
-    rows, columns
-        Of each pixel.
-    color
-        RGBA, shape (4,).
-    src_factor, dst_factor
-        As `refcloud.raster.blend`.
-    """
-    behind = buffer.pixels[rows, columns]
-    buffer.pixels[rows, columns] = blended(
-        color, behind, src_factor, dst_factor, "FUNC_ADD", NOTHING
-    )

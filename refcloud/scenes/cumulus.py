@@ -17,7 +17,7 @@ from refcloud.lighting import Haze, Look, named
 from refcloud.metaballs import approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium
 from refcloud.render import SUN
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.sky import Sky
 
 # The cloud: its seed was chosen by eye among 24, as was the turn.
@@ -97,6 +97,7 @@ def draw(model: Model, view: View) -> Picture:
         seed=view.seed,
         observe=view.observe,
         backend=view.backend,
+        kept=view.kept,
     )
 
 
@@ -105,4 +106,17 @@ def camera(view: View) -> Camera:
     return Camera(np.array(EYE), np.array(TARGET), width=view.width, height=view.height)
 
 
-enter(Scene("cumulus", "a cumulus over a field of small clouds", model, draw))
+def eye(model: Model, view: View) -> Camera:
+    """Give the scene's own camera, which knows nothing of its clouds."""
+    return camera(view)
+
+
+enter(
+    Scene(
+        "cumulus",
+        "a cumulus over a field of small clouds",
+        model,
+        draw,
+        Motion(eye, (SUN,)),
+    )
+)

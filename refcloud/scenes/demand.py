@@ -35,7 +35,7 @@ from refcloud.march import ray_box
 from refcloud.optics import Medium, Sun
 from refcloud.raster import Framebuffer, draw_box
 from refcloud.raster.walls import LIGHT_BLUE
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.scenes.demand_plane import mended, no_model, pair, plain, refuse_given
 
 # The box by its rear left lower and front right upper corner, and the cloud in it.
@@ -55,6 +55,12 @@ LIT = Octaves(1, backward_share=0.0)  # single scattering, with light from the s
 
 def cloud_in_box(view: View) -> VoxelGrid:
     """Make the cloud, as fine as the picture shows it."""
+    if view.offset is not None:
+        # The noise is fixed in the world: wind through the box is the box moved against
+        # it. Lumps come in at one wall and leave at the other, so all of them stay.
+        against = LOWER - view.offset, UPPER - view.offset
+        blown = box_cloud(*against, voxel=fineness(view), **CLOUD)
+        return VoxelGrid(blown.density, LOWER, UPPER)
     grid = box_cloud(LOWER, UPPER, voxel=fineness(view), **CLOUD)
     # Single lumps near the walls would hang in the air as beads.
     return VoxelGrid(largest_part(grid.density), grid.lower, grid.upper)
@@ -145,6 +151,11 @@ def eye(view: View) -> Camera:
     )
 
 
+def own_eye(model: Model, view: View) -> Camera:
+    """Give the scene's own camera."""
+    return eye(view)
+
+
 def over_opaque(light: Array) -> Framebuffer:
     """Make a framebuffer of what stands behind everything."""
     return Framebuffer(np.concatenate([light, np.ones_like(light[..., :1])], axis=-1))
@@ -155,15 +166,19 @@ def marched_alone(view: View) -> None:
     refuse_given(view, ("look",), "a scene that is marched")
 
 
-for name, title, draw in (
-    ("box", "the box, its walls and the cloud", partial(boxed, frame="walls")),
-    ("faces", "the wrong try, a texture on the faces", faces),
+NEVER = (math.inf, math.inf, math.inf)  # the noise in the box does not repeat
+BLOWN = Motion(own_eye, (LIGHT,), repeats=NEVER)
+UNLIT_BLOWN = Motion(own_eye, (), repeats=NEVER)
+for name, title, draw, motion in (
+    ("box", "the box, its walls and the cloud", partial(boxed, frame="walls"), BLOWN),
+    ("faces", "the wrong try, a texture on the faces", faces, Motion(own_eye)),
     (
         "quad",
         "the cloud by Beer's law alone",
         partial(boxed, frame="lines", light=UNLIT),
+        UNLIT_BLOWN,
     ),
-    ("lit", "the cloud, lit", boxed),
-    ("background", "a plain background and the sky", backgrounds),
+    ("lit", "the cloud, lit", boxed, BLOWN),
+    ("background", "a plain background and the sky", backgrounds, BLOWN),
 ):
-    enter(Scene(f"demand-{name}", f"document D: {title}", no_model, draw))
+    enter(Scene(f"demand-{name}", f"document D: {title}", no_model, draw, motion))

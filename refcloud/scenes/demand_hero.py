@@ -22,7 +22,7 @@ from refcloud.conventions import WHOLE_SPHERE, Array, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Octaves, octave_march
 from refcloud.optics import Medium, Sun
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.scenes import cumulus
 from refcloud.scenes.demand import marched_alone
 from refcloud.scenes.demand_plane import no_model
@@ -148,4 +148,12 @@ def turned(vector: Array, turn: float) -> Array:
     return np.array([c * x - s * z, y, s * x + c * z])
 
 
-enter(Scene("demand", "a marched cumulus over a field of small ones", no_model, draw))
+enter(
+    Scene(
+        "demand",
+        "a marched cumulus over a field of small ones",
+        no_model,
+        draw,
+        Motion(cumulus.eye, (SUN,)),
+    )
+)

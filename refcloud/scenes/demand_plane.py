@@ -9,6 +9,7 @@ printed sky, nearly black, beside a mended one (E34).
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -20,7 +21,7 @@ from refcloud.conventions import Array
 from refcloud.image import Picture, srgb_decode
 from refcloud.noise import fbm_grid, smooth_grid, worley_drawn, worley_smooth_grid
 from refcloud.noise.worley_smooth import FINER, Detail
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.scenes.demand_cells import cells_overlay
 from refcloud.sky import printed_gradient, sky_gradient
 
@@ -60,9 +61,10 @@ def rejected(model: Model, view: View) -> Picture:
 def filled(detail: Detail, view: View) -> Picture:
     """Draw a slice of the finer noise above, and of the texture that it fills below."""
     pixel = SLICE / max(view.width, view.height)
-    x: Array = np.asarray(pixel * (np.arange(view.width) + 0.5), np.float64)
-    y: Array = np.asarray(pixel * (np.arange(view.height) + 0.5), np.float64)
-    z = np.array([HEIGHT])
+    across, up, through = np.zeros(3) if view.offset is None else view.offset
+    x: Array = np.asarray(pixel * (np.arange(view.width) + 0.5) - across, np.float64)
+    y: Array = np.asarray(pixel * (np.arange(view.height) + 0.5) + up, np.float64)
+    z = np.array([HEIGHT - through + view.time])
     upper, lower = y[: view.height // 2], y[view.height // 2 :]
     finer = FINER * x, FINER * upper, FINER * z
     if detail == "smooth":
@@ -137,11 +139,19 @@ def no_model() -> Model:
     return Model({})
 
 
-for name, title, draw in (
-    ("worley", "Worley noise in the plane", partial(worley, inverted=False)),
-    ("worley-inverted", "Worley noise, inverted", partial(worley, inverted=True)),
-    ("cells", "cells, points, and where one pixel looks", cells),
-    ("perlin", "smooth noise beside the rejected gradient noise", rejected),
-    ("sky", "the sky as printed, and mended", skies),
+# Slices of noise in space: time moves the slice, wind the noise, and neither repeats.
+SLICED = Motion(period=math.inf, repeats=(math.inf, math.inf, math.inf))
+STILL = Motion()
+for name, title, draw, motion in (
+    ("worley", "Worley noise in the plane", partial(worley, inverted=False), STILL),
+    (
+        "worley-inverted",
+        "Worley noise, inverted",
+        partial(worley, inverted=True),
+        STILL,
+    ),
+    ("cells", "cells, points, and where one pixel looks", cells, STILL),
+    ("perlin", "smooth noise beside the rejected gradient noise", rejected, SLICED),
+    ("sky", "the sky as printed, and mended", skies, STILL),
 ):
-    enter(Scene(f"demand-{name}", f"document D: {title}", no_model, draw))
+    enter(Scene(f"demand-{name}", f"document D: {title}", no_model, draw, motion))

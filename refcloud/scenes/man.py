@@ -18,16 +18,16 @@ from functools import partial
 
 import numpy as np
 
-from refcloud.camera import AnyCamera
+from refcloud.camera import AnyCamera, Camera
 from refcloud.cloudmap import VoxelGrid, generate
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import WHOLE_SPHERE
 from refcloud.image import Picture
 from refcloud.lighting import named
-from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
+from refcloud.metaballs import approximate, placed, prune, voxel_balls
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
 from refcloud.render import framed
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.scenes import cumulus
 from refcloud.sky import Sky
 
@@ -96,9 +96,13 @@ def shading_model() -> Model:
 
 def draw_front(model: Model, view: View) -> Picture:
     """Draw a cloud framed by itself, the sun in front."""
-    balls: Metaballs = model.clouds["cloud"]
-    camera = view.camera or framed(balls, view.width, view.height)
+    camera = view.camera or in_front(model, view)
     return _draw(model, view, camera, FRONT, CLOUD_MEDIUM, Sky())
+
+
+def in_front(model: Model, view: View) -> Camera:
+    """Frame the cloud by itself."""
+    return framed(model.clouds["cloud"], view.width, view.height)
 
 
 def draw_behind(model: Model, view: View, medium: Medium) -> Picture:
@@ -122,17 +126,21 @@ def _draw(
         seed=view.seed,
         observe=view.observe,
         backend=view.backend,
+        kept=view.kept,
     )
 
 
-enter(Scene("man-04", "figure 4: the cloud map", voxel_model, draw_front))
+AROUND_FRONT = Motion(in_front, (FRONT,))
+AROUND_BEHIND = Motion(cumulus.eye, (BEHIND,))
+enter(Scene("man-04", "figure 4: the cloud map", voxel_model, draw_front, AROUND_FRONT))
 for figure, count in ((8, 1000), (9, 100), (10, 30)):
     title = f"figure {figure}: the map as {count} balls"
-    enter(Scene(f"man-{figure:02}", title, partial(cluster_model, count), draw_front))
+    model = partial(cluster_model, count)
+    enter(Scene(f"man-{figure:02}", title, model, draw_front, AROUND_FRONT))
 for figure, how, medium in (
     (13, "isotropic", ISOTROPIC),
     (14, "anisotropic", FORWARD),
 ):
     title = f"figure {figure}: {how} scattering"
     against = partial(draw_behind, medium=medium)
-    enter(Scene(f"man-{figure}", title, shading_model, against))
+    enter(Scene(f"man-{figure}", title, shading_model, against, AROUND_BEHIND))

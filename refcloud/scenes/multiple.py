@@ -19,7 +19,7 @@ from refcloud.march.quadrature import grid_through_the_middle
 from refcloud.march_picture import draw_march
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.scene import Model, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, View, enter
 from refcloud.scenes import cumulus
 from refcloud.sky import Sky
 
@@ -66,4 +66,12 @@ def draw(model: Model, view: View) -> Picture:
     )
 
 
-enter(Scene("multiple", "a cumulus with every order of scattering", no_model, draw))
+enter(
+    Scene(
+        "multiple",
+        "a cumulus with every order of scattering",
+        no_model,
+        draw,
+        Motion(cumulus.eye, (LATE_MORNING,)),
+    )
+)

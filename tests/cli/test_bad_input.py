@@ -47,6 +47,19 @@ BAD = {
     "render cumulus --irradiance 1 1 1": "--sun: expected it beside --irradiance",
     "render cumulus --background sky": "background: expected none beside a scene",
     "render cumulus --width 1000000 --height 1000000": "at most 64 megapixels",
+    # animations
+    "animate man-10": "--frames: expected how many pictures, got none",
+    "animate man-10 --frames 0": r"--frames: .*\[1, 100000\], got 0",
+    "animate man-10 --frames 3": "moves: expected something that moves",
+    "animate demand-sky --frames 3": r"moves: .* \(none: it cannot move\)",
+    "animate demand-sky --frames 3 --turn-eye 9": "turn_eye: expected none for demand-",
+    "animate man-10 --frames 3 --time 0 1": "time: expected none for man-10, which",
+    "animate man-10 --frames 3 --time 0": "--time: expected two numbers, got '0'",
+    "animate man-10 --frames 3 --turn-eye 9 -o a.mp4": "ending in .png or .apng or",
+    "animate man-10 --frames 3 --turn-eye 9 -o no/a": "a name in an existing folder",
+    "animate balls.npz --frames 2 --turn-eye 9 --background transparent -o a.gif": (
+        "path: expected an opaque background in .gif"
+    ),
     # values
     "generate --octaves 0": r"--octaves: expected a whole number in \[1, 32\], got 0",
     "generate --octaves 2.5": "whole number in .*, got '2.5'",

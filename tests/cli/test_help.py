@@ -19,11 +19,20 @@ from refcloud.cli.bench import Measurement
 from refcloud.cli.clouds import denser
 from refcloud.cli.docstrings import parameter_texts
 from refcloud.cli.entry import COMMANDS
+from refcloud.cli.figure import Setting
 from refcloud.conventions import Range
 from refcloud.march import Mixing
 from refcloud.noise_pictures import noise_picture
 
 # What each command takes its options from, and the parameters that words cannot give.
+PICTURES: list[tuple[Callable[..., Any], set[str]]] = [
+    (rc.Camera, {"width", "height"}),
+    (rc.Sun, set()),
+    (rc.Medium, set()),
+    (denser, {"cloud"}),
+    (Mixing, set()),
+    (rc.Picture.save, {"self", "path"}),
+]
 SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
     "generate": [(rc.generate, {"observe"})],
     "approximate": [(rc.approximate, {"grid", "observe"}), (Outputs, set())],
@@ -35,23 +44,41 @@ SOURCES: dict[str, list[tuple[Callable[..., Any], set[str]]]] = {
                 "volumes",
             },
         ),
-        (rc.Camera, {"width", "height"}),
-        (rc.Sun, set()),
-        (rc.Medium, set()),
-        (denser, {"cloud"}),
-        (Mixing, set()),
-        (rc.Picture.save, {"self", "path"}),
+        *PICTURES,
+    ],
+    "animate": [
+        (
+            rc.render,
+            {
+                *("cloud", "camera", "suns", "medium", "haze", "mixing", "observe"),
+                *("volumes", "quality"),
+            },
+        ),
+        (rc.Moves, set()),
+        (
+            rc.animate,
+            {
+                name
+                for name in inspect.signature(rc.animate).parameters
+                if name not in ("frames", "fps", "jobs", "redraw")
+            },
+        ),
+        *PICTURES,
     ],
     "compare": [
         (rc.compare_codes, {"a", "b"}),
         (rc.difference_picture, {"a", "b"}),
     ],
+    "figure": [(Setting, set())],
     "list": [],
     "noise": [(noise_picture, {"kind"})],
     "bench": [(Measurement, set())],
 }
 RENAMED = {"direction": "sun"}
-OWN_DEFAULTS = {("render", "tolerance"): "1/255"}
+OWN_DEFAULTS = {
+    ("render", "tolerance"): "1/255",
+    ("animate", "tolerance"): "1/255",
+}
 PARAMETERS = [
     (command, source, name)
     for command, sources in SOURCES.items()

@@ -163,8 +163,8 @@ def test_what_a_kind_lacks_is_refused_by_name() -> None:
         ValueError, match=r"^points: expected 3 coordinates for 'value'"
     ):
         fbm(np.zeros((4, 2)), kind="value")
-    with pytest.raises(ValueError, match=r"^z: expected 2 or 3 coordinates"):
-        fbm_grid([0.0], [0.0], [0.0], time=0.5)
+    with pytest.raises(ValueError, match=r"^z: expected 3 coordinates for 'value'"):
+        fbm_grid([0.0], [0.0], [0.0], kind="value", time=0.5)
     with pytest.raises(ValueError, match=r"^period: expected None for 'simplex'"):
         fbm(np.zeros(3), kind="simplex", period=4)
     with pytest.raises(

@@ -29,6 +29,7 @@ SAME = 1e-12  # the contract
 SINGLE = 5e-6  # float32: worst seen 1.7e-6 near quintic t = 1, times 3
 
 dimensions = st.sampled_from([2, 3])
+at_points = st.sampled_from([2, 3, 4])  # on grids there is no fourth axis
 
 
 def module(name: str):
@@ -49,7 +50,7 @@ def hashed_places(count: int, width: int, seed: int = 0, size: float = 40.0):
     )
 
 
-@pytest.mark.parametrize("n", [2, 3])
+@pytest.mark.parametrize("n", [2, 3, 4])
 @pytest.mark.parametrize("fade", ["quintic", "hermite"])
 def test_the_readable_form_is_the_same_noise(n: int, fade) -> None:
     at, name = hashed_places(500, n), SETS[n][0]
@@ -74,7 +75,7 @@ def test_grid_equals_points_in_both_precisions(n: int, data) -> None:
         np.testing.assert_allclose(single, exact, rtol=0, atol=SINGLE)
 
 
-@given(dimensions, st.data())
+@given(at_points, st.data())
 def test_range_at_any_finite_place(n: int, data) -> None:
     noise = gradient(np.array(data.draw(places(n))), **data.draw(ways(n)))
     assert np.abs(noise).max() <= 1.0
@@ -150,7 +151,7 @@ def test_zero_at_lattice_points(n: int, data) -> None:
 
 
 @pytest.mark.parametrize("fade", ["quintic", "hermite"])
-@pytest.mark.parametrize("n", [2, 3])
+@pytest.mark.parametrize("n", [2, 3, 4])
 def test_derivative_against_differences(n: int, fade) -> None:
     at, step = hashed_places(300, n), 2.0**-18
     _, slope = gradient_derivative(at, seed=3, fade=fade)
@@ -164,14 +165,14 @@ def test_derivative_against_differences(n: int, fade) -> None:
         assert error.max() < 40 * step, "samples on both sides of a face"
 
 
-@given(dimensions, st.data())
+@given(at_points, st.data())
 def test_derivative_brings_the_noise_along(n: int, data) -> None:
     at, how = np.array(data.draw(places(n))), data.draw(ways(n))
     noise, _ = gradient_derivative(at, **how)
     np.testing.assert_allclose(noise, gradient(at, **how), rtol=0, atol=SAME)
 
 
-@pytest.mark.parametrize("n", [2, 3])
+@pytest.mark.parametrize("n", [2, 3, 4])
 def test_faces_are_c1_for_hermite_and_c2_for_quintic(n: int) -> None:
     at = np.repeat(hashed_places(200, n)[:, None], 4, axis=1)
     step = 2.0**-16
@@ -199,6 +200,13 @@ def test_the_pattern_repeats_after_its_period_exactly(
     assert gradient(moved, **how) == gradient(at, **how)
     here, there = (gradient_grid(*c[:, None], **how) for c in (at, moved))
     assert here == there
+
+
+def test_in_four_dimensions_it_repeats_too() -> None:
+    at = np.floor(hashed_places(200, 4) * 8) / 8
+    moved = at + 5 * np.array([3, -1, 0, 2])
+    np.testing.assert_array_equal(gradient(moved, period=5), gradient(at, period=5))
+    assert np.abs(gradient(moved) - gradient(at)).max() > 0.1
 
 
 def test_without_a_period_it_repeats_after_2_to_32_and_the_table_after_256() -> None:
@@ -231,7 +239,7 @@ def test_no_axis_is_preferred_in_the_noise(n: int) -> None:
 
 
 @settings(max_examples=25)
-@given(dimensions, st.data(), st.integers(1, 5))
+@given(at_points, st.data(), st.integers(1, 5))
 def test_chunks_do_not_show(n: int, data, chunk: int) -> None:
     at, how = np.array(data.draw(places(n, 9))), data.draw(ways(n))
     whole = gradient(at, **how)

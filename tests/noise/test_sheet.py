@@ -148,3 +148,24 @@ def test_bad_arguments_are_refused_by_name() -> None:
         sheet_map(0)
     with pytest.raises(ValueError, match=r"^sharpness: expected a finite number in"):
         exponential_filter([1.0], sharpness=1.5)
+
+
+@settings(max_examples=40)
+@given(st.data(), st.integers(1, 6), st.integers(1, 40) | st.just(64))
+def test_the_fast_sum_is_the_literal_one(data, octaves, size) -> None:
+    sheet = importlib.import_module("refcloud.noise.sheet")
+    values = drawn_map(data.draw)
+    found = overlap_octaves(values, size, octaves=octaves)
+    literal = sheet._literal(values, size, octaves)
+    if size & (size - 1) == 0 and not any(n & (n - 1) for n in values.shape):
+        np.testing.assert_array_equal(found, literal)  # every place is exact
+    else:
+        # Places round by a last bit, slopes are up to 256 each way.
+        np.testing.assert_allclose(found, literal, rtol=0, atol=1e-10)
+
+
+def test_the_filter_at_both_ends_of_sharpness() -> None:
+    values = [200.0, 235.0, 236.0, 400.0]
+    hard = exponential_filter(values, sharpness=0.0)
+    assert hard.tolist() == [0.0, 0.0, 255.0, 255.0]
+    assert (exponential_filter(values, sharpness=1.0) == 0.0).all()

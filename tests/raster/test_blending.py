@@ -15,7 +15,7 @@ from refcloud.plain import raster as plain
 from refcloud.raster import Blending, Framebuffer, blend, draw_fragments, framebuffer
 from refcloud.raster.blending import blend_patch, blended, blended_as
 from refcloud.raster.factors import Equation, Factor
-from refcloud.raster.fragments import State
+from refcloud.raster.store import State
 
 FACTORS = typing.get_args(Factor)
 EQUATIONS = typing.get_args(Equation)

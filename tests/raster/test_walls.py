@@ -1,4 +1,4 @@
-"""Triangles fill every pixel once; the box's parts lie behind and before the cloud."""
+"""The box's parts lie behind and before the cloud."""
 
 from __future__ import annotations
 
@@ -7,62 +7,27 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from twins.camera import drawn_camera
-from twins.walls import listed, spots
+from twins.walls import listed
 
 from refcloud.camera import Camera, OrthographicCamera, project
 from refcloud.cloudmap import box_corners, box_lines, box_triangles
 from refcloud.raster import (
+    Blending,
+    State,
     draw_box,
     draw_lines,
     draw_triangles,
     faces_away,
     framebuffer,
     line_pixels,
-    triangle_pixels,
 )
+from refcloud.raster.meshes import separate
 from refcloud.raster.walls import LIGHT_BLUE, ORANGE
 
 SIZE = {"width": 16, "height": 12}
-ONCE = {"color": [1.0, 1.0, 1.0, 1.0], "src_factor": "ONE", "dst_factor": "ONE"}
+ONCE = {"shade": np.ones(4), "state": State(blending=Blending("ONE", "ONE"))}
 BOX = [-1.0, -0.8, -0.6], [1.0, 0.8, 0.6]
 NONE = [0.0, 0.0, 0.0, 0.0]
-
-
-@settings(max_examples=40)
-@given(spots, st.lists(st.floats(0.5, 12.0), min_size=3, max_size=7))
-def test_triangles_about_a_point_fill_every_pixel_once(middle, reach) -> None:
-    # A fan that covers a star-shaped area once, on whole sub-pixels.
-    around = 2.0 * np.pi * np.arange(len(reach)) / len(reach)
-    way = np.stack([np.cos(around), np.sin(around)], axis=1)
-    middle = np.round(np.array(middle) * 256.0) / 256.0
-    ring = np.round((middle + np.array(reach)[:, None] * way) * 256.0) / 256.0
-    count = np.zeros((12, 16), int)
-    x, y = np.arange(16) + 0.5, np.arange(12)[:, None] + 0.5
-    within = np.zeros((12, 16), bool)
-    for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        np.add.at(count, triangle_pixels([middle, a, b], **SIZE), 1)
-        sides = [
-            (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])
-            for p, q in ((middle, a), (a, b), (b, middle))
-        ]
-        within |= np.min(sides, axis=0) > 0.0
-    assert count.max() <= 1
-    assert count[within].all()
-
-
-@given(st.lists(spots, min_size=3, max_size=3), st.permutations(range(3)))
-def test_the_order_of_corners_does_not_matter(corners, order) -> None:
-    one = triangle_pixels(corners, **SIZE)
-    other = triangle_pixels([corners[k] for k in order], **SIZE)
-    assert listed(*one) == listed(*other)
-
-
-@given(st.lists(spots, min_size=3, max_size=3))
-def test_a_window_shows_its_part_of_a_triangle(corners) -> None:
-    large = triangle_pixels(corners, width=40, height=40)
-    inside = (large[0] < 12) & (large[1] < 16)
-    small = triangle_pixels(corners, **SIZE)
-    assert listed(*small) == listed(large[0][inside], large[1][inside])
 
 
 @settings(max_examples=60)
@@ -79,8 +44,8 @@ def test_f08_each_pixel_of_the_box_has_one_wall_behind_and_one_before(data) -> N
     triangles = box_triangles(*BOX)
     away = faces_away(camera, triangles)
     behind, before = framebuffer(24, 18), framebuffer(24, 18)
-    draw_triangles(behind, camera, triangles[away], **ONCE)
-    draw_triangles(before, camera, triangles[~away], **ONCE)
+    draw_triangles(behind, camera, separate(triangles[away]), **ONCE)
+    draw_triangles(before, camera, separate(triangles[~away]), **ONCE)
     np.testing.assert_array_equal(behind.pixels, before.pixels)
     assert behind.pixels.max() <= 1.0
 
@@ -93,7 +58,7 @@ def test_inside_the_box_every_wall_is_behind(eye, target) -> None:
     buffer = framebuffer(12, 9)
     draw_box(buffer, camera, *BOX, "before")
     assert not buffer.pixels.any()
-    draw_triangles(buffer, camera, box_triangles(*BOX), **ONCE)
+    draw_triangles(buffer, camera, separate(box_triangles(*BOX)), **ONCE)
     # In whichever direction one looks, one wall is there, with no seam.
     np.testing.assert_array_equal(buffer.pixels, np.ones((9, 12, 4)))
 
@@ -142,8 +107,6 @@ def test_an_orthographic_eye_is_outside_wherever_it_stands() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: triangle_pixels([[0, 0]] * 2, **SIZE), "corners: expected an array"),
-        (lambda: triangle_pixels([[0, 1e9]] * 3, **SIZE), "corners: expected numbers"),
         (
             lambda: draw_box(
                 framebuffer(4, 4), Camera([0, 0, 9], [0, 0, 0]), *BOX, "behind"

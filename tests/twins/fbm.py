@@ -16,7 +16,7 @@ ROUNDED = "worst seen 3.7e-15 in 300 examples, times 8: places of the octaves ro
 # Coordinates (time not among them) that each kind takes without and with time.
 COUNTS = {
     "value": ((3,), (2,)),
-    "gradient": ((2, 3), (2,)),
+    "gradient": ((2, 3), (2, 3)),
     "simplex": ((2, 3), (2, 3)),
 }
 

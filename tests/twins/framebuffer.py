@@ -14,7 +14,7 @@ from refcloud.plain import llvmpipe as plain_llvmpipe
 from refcloud.raster import blending, formats, llvmpipe
 from refcloud.raster.factors import Blending, Equation, Factor
 from refcloud.raster.formats import Format
-from refcloud.raster.fragments import DepthFunc, State
+from refcloud.raster.store import DepthFunc, State
 from twins import Draw, twin
 
 CODE = st.integers(0, 255).map(lambda code: code / 255.0)

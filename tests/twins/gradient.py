@@ -16,7 +16,11 @@ STEEP = "worst seen 4.4e-15 in 600 examples, times 11: slopes of the fade reach 
 hashes = st.sampled_from(["mixed", "table"])
 fades = st.sampled_from(["quintic", "hermite"])
 periods = st.none() | st.integers(1, 9) | st.integers(2**31 - 2, 2**31)
-SETS = {2: ["directions8", "diagonals4"], 3: ["edges12", "corners8"]}
+SETS = {
+    2: ["directions8", "diagonals4"],
+    3: ["edges12", "corners8"],
+    4: ["edges32"],
+}
 
 
 def ways(dimensions: int, **more) -> st.SearchStrategy[dict]:
@@ -40,7 +44,7 @@ def places(dimensions: int, most: int = 4) -> st.SearchStrategy[list]:
 
 
 def drawn(draw: Draw) -> tuple[list, dict]:
-    dimensions = draw(st.sampled_from([2, 3]))
+    dimensions = draw(st.sampled_from([2, 3, 4]))
     return draw(places(dimensions)), draw(ways(dimensions))
 
 
@@ -61,7 +65,7 @@ def permutation_table(draw):
 @twin(array.gradient_set, plain.gradient_set, tolerance=0.0, why=EXACT)
 def gradient_set(draw):
     dimensions = draw(st.integers(2, 4))
-    name = draw(st.none() | st.sampled_from(SETS.get(dimensions, ["edges32"])))
+    name = draw(st.none() | st.sampled_from(SETS[dimensions]))
     actual = array.gradient_set(name, dimensions=dimensions)
     return actual, plain.gradient_set(name, dimensions=dimensions)
 

@@ -11,6 +11,7 @@ from refcloud.plain import image as plain
 from twins import Draw, twin
 
 WITHOUT = {
+    "refcloud.image.animation.write_animation": "writes a file",
     "refcloud.image.picture.load_picture": "reads a file",
     "refcloud.image.png.read_png": "reads a file",
     "refcloud.image.png.write_png": "writes a file",

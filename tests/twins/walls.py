@@ -1,4 +1,4 @@
-"""Lines, triangles and the box around a cloud beside their plain twins."""
+"""Lines and the box around a cloud beside their plain twins."""
 
 from __future__ import annotations
 
@@ -60,14 +60,6 @@ def line_pixels(draw: Draw):
     return as_array(listed(*found)), as_array(expected)
 
 
-@twin(raster.triangle_pixels, plain.triangle_pixels, tolerance=0.0, why=WHOLE)
-def triangle_pixels(draw: Draw):
-    corners, width, height = [draw(spots) for _ in range(3)], draw(sizes), draw(sizes)
-    found = raster.triangle_pixels(corners, width=width, height=height)
-    expected = plain.triangle_pixels(corners, width, height)
-    return as_array(listed(*found)), as_array(expected)
-
-
 def _buffers(camera) -> tuple[raster.Framebuffer, list]:
     count = np.arange(camera.height * camera.width * 4.0)
     pixels = (count * 2.0**0.5 % 1.0).reshape(camera.height, camera.width, 4)
@@ -85,18 +77,6 @@ def draw_lines(draw: Draw):
     how = {"thickness": thickness, "near": near}
     raster.draw_lines(buffer, camera, ends, color=color, **how)
     plain.draw_lines(expected, as_plain(camera), ends.tolist(), color, thickness, near)
-    return buffer.pixels, expected
-
-
-@twin(raster.draw_triangles, plain.draw_triangles, tolerance=1e-15, why=WHOLE)
-def draw_triangles(draw: Draw):
-    camera, near = drawn_camera(draw), draw(nears)
-    corners = np.array(draw(st.lists(st.tuples(places, places, places), max_size=2)))
-    corners = corners.reshape(-1, 3, 3)
-    assume_plain_places(camera, corners, near)
-    (buffer, expected), color = _buffers(camera), draw(colours)
-    raster.draw_triangles(buffer, camera, corners, color=color, near=near)
-    plain.draw_triangles(expected, as_plain(camera), corners.tolist(), color, near)
     return buffer.pixels, expected
 
 

@@ -1,0 +1,46 @@
+"""Drawings: lines, discs and words on a canvas, and axes for plots."""
+
+from refcloud.drawing.axes import Axes, axes_in, curve, grid_of
+from refcloud.drawing.canvas import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    INKS,
+    ORANGE,
+    RED,
+    WHITE,
+    Canvas,
+    arrow,
+    blank,
+    box,
+    disc,
+    image,
+    polyline,
+    ring,
+    words,
+)
+
+__all__ = [
+    "BLACK",
+    "BLUE",
+    "GREEN",
+    "GREY",
+    "INKS",
+    "ORANGE",
+    "RED",
+    "WHITE",
+    "Axes",
+    "Canvas",
+    "arrow",
+    "axes_in",
+    "blank",
+    "box",
+    "curve",
+    "disc",
+    "grid_of",
+    "image",
+    "polyline",
+    "ring",
+    "words",
+]

@@ -1,0 +1,77 @@
+"""Triangles cut by planes, all at once.
+
+A triangle with one corner outside leaves a quad, that is two triangles, one with two
+outside a smaller triangle. What is cut gets new corners at the end of the list, with
+attributes on the straight line between the old ones: before the division by depth that
+is exact.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from refcloud.conventions import Array
+
+Faces = NDArray[np.int64]
+
+
+def clip(
+    corners: Array, faces: Faces, planes: Array
+) -> tuple[Array, Faces, NDArray[np.int64]]:
+    """Cut triangles by planes, one plane after the other.
+
+    Parameters
+    ----------
+    corners
+        Right, up and depth in the camera's frame, then attributes, shape (3 + K, V).
+    faces
+        Corners of each triangle, shape (3, T).
+    planes
+        Shape (P, 4): a b c d, with a right + b up + c depth + d at least 0 inside.
+
+    Returns
+    -------
+    Corners, those of cuts behind the others; faces, shape (3, T'), in the order of the
+    triangles that they are parts of; and which triangle that is, shape (T',).
+
+    Source: Sutherland and Hodgman's way to cut polygons; OpenGL 4.6, section 13.7.
+    """
+    source = np.arange(faces.shape[1])
+    for a, b, c, d in planes:
+        inside = a * corners[0] + b * corners[1] + c * corners[2] + d
+        outside = inside < 0.0
+        if not outside.any():
+            continue
+        out = outside[faces]  # (3, T)
+        count = out.sum(axis=0)
+        parts = [(faces[:, count == 0], source[count == 0])]
+        for many in (1, 2):
+            # 1. Turn each triangle so that its odd corner comes first.
+            cut, which = faces[:, count == many], source[count == many]
+            odd = np.argmax(out[:, count == many] == (many == 1), axis=0)
+            turn = (odd + np.arange(3)[:, None]) % 3
+            first, second, third = np.take_along_axis(cut, turn, axis=0)
+            # 2. New corners where the odd one's edges meet the plane, always from the
+            #    inner end on: two triangles that share an edge cut it at one place.
+            new = corners.shape[1] + np.arange(2 * cut.shape[1]).reshape(2, -1)
+            ends = np.stack([second, third])
+            inner, outer = (ends, first) if many == 1 else (first, ends)
+            inner, outer = np.broadcast_arrays(inner, outer)
+            inner, outer = inner.ravel(), outer.ravel()
+            share = inside[inner] / (inside[inner] - inside[outer])
+            start = corners[:, inner]
+            meeting = start + share * (corners[:, outer] - start)
+            corners = np.concatenate([corners, meeting], axis=1)
+            inside = np.concatenate([inside, np.zeros(len(share))])
+            # 3. What is left of the triangle.
+            if many == 2:
+                parts.append((np.stack([first, *new]), which))
+            else:
+                parts.append((np.stack([new[0], second, third]), which))
+                parts.append((np.stack([new[0], third, new[1]]), which))
+        faces = np.concatenate([part for part, _ in parts], axis=1)
+        source = np.concatenate([which for _, which in parts])
+        order = np.argsort(source, kind="stable")
+        faces, source = faces[:, order], source[order]
+    return corners, faces, source

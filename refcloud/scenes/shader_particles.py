@@ -1,0 +1,144 @@
+"""Document S's first experiment: a field of clouds as particles, slow from blending.
+
+``shader-particles`` draws some 2500 particles as splats and counts what the document
+blames, the pixels that are blended: every particle's disc, most of them on top of each
+other (V12). A sky on a surface blends each pixel once.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+
+import numpy as np
+
+from refcloud.camera import AnyCamera, Camera, project
+from refcloud.compose import Layer, draw_layers
+from refcloud.conventions import Array
+from refcloud.image import Picture
+from refcloud.lighting import Haze, named
+from refcloud.metaballs import Metaballs
+from refcloud.noise import uniform
+from refcloud.optics import Medium, Sun
+from refcloud.raster.footprint import patch_of
+from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.sky import Sky
+
+CLOUDS, PARTICLES = 26, 96  # in each cloud
+SPACING, BASE = 34.0, 22.0  # scene units between clouds, and up to their bases
+WIDE, HIGH = 13.0, 7.0  # half width and height of a cloud
+MEDIUM = Medium(0.9)
+HAZE = Haze(np.array([0.58, 0.70, 0.83]), 420.0)
+SUN = Sun(np.array([-0.62, 0.62, 0.42]), 1.25 * 4.0 * np.pi * np.array([1, 0.96, 0.9]))
+
+
+def particles() -> Model:
+    """Scatter particles: clouds on a jittered grid, flat below and heaped above."""
+    start = time.perf_counter()
+    cloud = np.arange(CLOUDS)
+    row, column = cloud // 5, cloud % 5
+    jitter = uniform(cloud[:, None], np.arange(4), seed=11)
+    scale = 0.6 + 0.7 * jitter[:, 2]
+    middle = np.stack(
+        [
+            (column - 2.0 + 0.8 * (jitter[:, 0] - 0.5)) * SPACING * (1.0 + 0.25 * row),
+            np.full(CLOUDS, BASE),
+            -(70.0 + SPACING * 1.6 * row + SPACING * jitter[:, 1]),
+        ],
+        axis=-1,
+    )
+    index = np.arange(CLOUDS * PARTICLES).reshape(CLOUDS, PARTICLES)
+    u = uniform(index[..., None], np.arange(5), seed=12)
+    around, away = 2.0 * np.pi * u[..., 0], np.sqrt(u[..., 1])
+    heap = (1.0 - away**2) * u[..., 2]  # lower toward the rim
+    size = (0.55 + 0.65 * u[..., 3]) * (1.0 - 0.5 * away)
+    offset = np.stack(
+        [
+            WIDE * away * np.cos(around),
+            HIGH * heap + 2.4 * size,
+            0.7 * WIDE * away * np.sin(around),
+        ],
+        axis=-1,
+    )
+    centers = middle[:, None] + scale[:, None, None] * offset
+    radii = 4.6 * scale[:, None] * size
+    balls = Metaballs(
+        centers.reshape(-1, 3), radii.ravel(), np.full(radii.size, 0.55), "wyvill"
+    )
+    note = f"field: {CLOUDS} clouds of {PARTICLES} particles"
+    return Model(
+        {"field": balls}, (note,), (), {"scatter": time.perf_counter() - start}
+    )
+
+
+def eye(model: Model, view: View) -> AnyCamera:
+    """Stand below the field and look over the horizon."""
+    if view.camera is not None:
+        return view.camera
+    return Camera(
+        np.array([0.0, 2.0, 0.0]),
+        np.array([0.0, 17.0, -70.0]),
+        fov_y=0.6,
+        width=view.width,
+        height=view.height,
+    )
+
+
+def blended_pixels(balls: Metaballs, camera: AnyCamera) -> int:
+    """Count the pixels that splats of all balls blend: one for each ball over each.
+
+    Parameters
+    ----------
+    balls
+        The particles.
+    camera
+        The eye.
+
+    Returns
+    -------
+    The sum over balls of the pixels whose centres lie in their discs.
+    """
+    x, y, _, scale = project(camera, balls.centers)
+    size = camera.width, camera.height
+    total = 0
+    for place in zip(x, y, scale * balls.radii, strict=True):
+        found = None if place[2] <= 0.0 else patch_of(*place, *size)
+        total += 0 if found is None else int(np.count_nonzero(found.q < 1.0))
+    return total
+
+
+def draw(model: Model, view: View) -> Picture:
+    """Draw the field as splats, and count their pixels."""
+    camera = eye(model, view)
+    balls = model.clouds["field"]
+    if view.offset is not None:
+        moved: Array = balls.centers + np.asarray(view.offset)
+        balls = dataclasses.replace(balls, centers=moved)
+    layer = Layer(balls, view.medium or MEDIUM, named(view.look or "cumulus"), HAZE)
+    picture = draw_layers(
+        [layer],
+        camera,
+        (SUN,) if view.suns is None else view.suns,
+        Sky(),
+        tolerance=view.tolerance,
+        seed=view.seed,
+        observe=view.observe,
+        backend=view.backend,
+    )
+    blended, pixels = blended_pixels(balls, camera), camera.width * camera.height
+    note = (
+        f"blended: {blended} pixels of {len(balls.radii)} particles,"
+        f" {blended / pixels:.1f} for each of the picture's {pixels}"
+    )
+    return dataclasses.replace(picture, notes=(*picture.notes, note))
+
+
+enter(
+    Scene(
+        "shader-particles",
+        "document S: a field of clouds as particles",
+        particles,
+        draw,
+        Motion(eye, (SUN,), turns="in place", repeats=(np.inf, np.inf, np.inf)),
+    )
+)
