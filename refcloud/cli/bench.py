@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from refcloud import bench
-from refcloud.bench import stability
+from refcloud.bench import certificates, stability
 from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import ready, say
 from refcloud.cli.parser import Command
@@ -48,7 +48,8 @@ PLOT = FileOption(
 )
 FIGURES = (".png",)
 STABILITY = "stability"  # a map of errors, without times
-NAMES = (*bench.SUBJECTS, STABILITY)
+CERTIFICATES = "certificates"  # counts of errors, without times
+NAMES = (*bench.SUBJECTS, STABILITY, CERTIFICATES)
 
 
 def command() -> Command:
@@ -75,6 +76,8 @@ def run(words: Sequence[str]) -> int:
         figure = ready(figure, FIGURES, PLOT.flag)
     if name == STABILITY:
         return _stability(how, figure)
+    if name == CERTIFICATES:
+        return _certificates(how, figure)
     subject = bench.SUBJECTS[name]
     rows = bench.run(subject, how.quick, how.peers)
     if how.json:
@@ -89,7 +92,25 @@ def run(words: Sequence[str]) -> int:
 def subjects() -> dict[str, str]:
     """Say in a line what each name measures."""
     found = {name: subject.title for name, subject in bench.SUBJECTS.items()}
-    return {**found, STABILITY: "where each algorithm keeps its digits: errors alone"}
+    found[STABILITY] = "where each algorithm keeps its digits: errors alone"
+    found[CERTIFICATES] = "how often a certificate fails, on generated scenes"
+    return found
+
+
+def _certificates(how: Measurement, figure: Path | None) -> int:
+    """Draw generated scenes, and count those that are off by more than was asked."""
+    if figure is not None:
+        advice = "leave it out: counts have no figure"
+        raise ValueError(
+            complaint(PLOT.flag, "none beside certificates", "one", advice)
+        )
+    found = certificates.tallies(how.quick)
+    if how.json:
+        rows = [{"kind": k, **dataclasses.asdict(t)} for k, t in found.items()]
+        say(json.dumps(rows, indent=1))
+    else:
+        say(certificates.table_of(found))
+    return 0
 
 
 def _stability(how: Measurement, figure: Path | None) -> int:
