@@ -11,7 +11,8 @@ from refcloud.bench.timing import Row
 
 ASKED = (1e-1, 1e-2, 1.0 / 255.0, 1e-3, 1e-4)
 NAME = "refcloud tolerance {:.2g}"
-WIDTH, HEIGHT = 640, 400  # pixels of the figure
+WIDTH, HEIGHT = 640, 360  # pixels of the figure, without the legend below
+ACROSS, ROW = 4, 13  # columns of the legend, and pixels of one of its lines
 LEAST = 1e-9  # smaller errors are drawn here
 COLOURS = 10  # that the figures tell apart
 HEADROOM = 2.0  # of the errors' axis, above what is asked for most
@@ -37,9 +38,11 @@ def asked_figure(rows: Sequence[Row], path: str | os.PathLike[str]) -> Path:
     The path.
     """
     figures = matplotlib_figures()
-    figure = figures.Figure((WIDTH / DENSITY, HEIGHT / DENSITY), dpi=DENSITY)
-    left, right = figure.subplots(1, 2, sharey=True)
     exact = {row.task: row.timing.median for row in rows if asked_of(row) is None}
+    below = ROW * (1 - len(exact) // -ACROSS)
+    size = WIDTH / DENSITY, (HEIGHT + below) / DENSITY
+    figure = figures.Figure(size, dpi=DENSITY)
+    left, right = figure.subplots(1, 2, sharey=True)
     for number, task in enumerate(exact):
         own = [(asked_of(r), r) for r in rows if r.task == task]
         points = [
@@ -57,10 +60,11 @@ def asked_figure(rows: Sequence[Row], path: str | os.PathLike[str]) -> Path:
     left.set(xscale="log", yscale="log", xlabel="tolerance asked")
     left.set_ylabel(f"error measured (at least {LEAST:g})")
     left.set_ylim(0.5 * LEAST, HEADROOM * max(ASKED))
-    right.set(xscale="log", xlabel="CPU time, of the exact picture's")
+    right.set(xlabel="CPU time, of the exact picture's")
+    right.set_xlim(left=0.0)
     for axes in (left, right):
         axes.grid(True, linewidth=0.3)
-    left.legend(fontsize=5, loc="lower right")
-    figure.tight_layout()
+    figure.legend(fontsize=6, ncols=ACROSS, loc="lower center", frameon=False)
+    figure.tight_layout(rect=(0.0, below / (HEIGHT + below), 1.0, 1.0))
     figure.savefig(path, metadata={"Software": None})
     return Path(path)
