@@ -34,8 +34,11 @@ from refcloud.transport import ScatteredLight
 from refcloud.transport.plans import GradeName, Plan
 from refcloud.transport.scattering import report_of
 
-LIGHT = 0.25  # share of the tolerance that pass 1 gets; pass 2 has more to save
+# Share of the tolerance that pass 1 gets; pass 2 has more to save, and gets what pass 1
+# does not use: where balls take turns that is all.
+LIGHT = 0.25
 FAR = 1e6  # widths of a cloud: from there all of it is seen along one direction
+WHITE = "displayed white"  # the unit of errors of a picture
 
 
 def passes_of(
@@ -122,7 +125,7 @@ def draw_layers(
     kept = {} if kept is None else kept
     for number, layer in enumerate(layers):
         share = tolerance / len(layers)
-        lit = layer.lit
+        lit, left = layer.lit, (1.0 - LIGHT) * share
         if not touches(layer.balls, camera):
             skipped += _unseen(layer, suns)
             continue
@@ -139,6 +142,9 @@ def draw_layers(
                 earlier=kept.get(number),
                 observe=observe,
             )
+            if backend == "numpy":  # where every error is told
+                used = sum(r.bound for r in lit.skipped if r.unit == WHITE)
+                left = max(left, share - used)
             kept.setdefault(number, lit)
         clock.stop("light")
         drawn, rows = eye_pass(
@@ -146,7 +152,7 @@ def draw_layers(
             camera,
             background=None if behind is None else rgba[..., :3],
             haze=layer.haze,
-            tolerance=(1.0 - LIGHT) * share,
+            tolerance=left,
             seed=seed,
             observe=observe,
         )
@@ -210,7 +216,7 @@ def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
     for row in rows:
         old = sums.get((row.stage, row.what))
         if old is not None:
-            adds = row.unit == "displayed white"
+            adds = row.unit == WHITE
             bound = old.bound + row.bound if adds else max(old.bound, row.bound)
             row = dataclasses.replace(
                 row, skipped=old.skipped + row.skipped, of=old.of + row.of, bound=bound

@@ -118,6 +118,9 @@ Vector = Annotated[Array, Shape(3)]
 Colour = Annotated[Array, Shape(3), Range(0.0, unit="radiance")]
 Backend = Literal["numpy", "gl"]  # what runs the two passes of light
 Tolerance = Annotated[float, Range(0.0, 1.0, "displayed white")]
+# How a bound is known: it was derived; this very picture was held against the exact
+# method in places; or it is the worst of other clouds, with a margin.
+Known = Literal["proved", "certified", "measured"]
 
 
 @dataclass(frozen=True)
@@ -134,6 +137,10 @@ class Skipped:
         The largest change of the stage's result; 0 where none.
     unit
         What the bound counts: "displayed white" in pictures, else the stage's own.
+    how
+        "proved": from what stands in the docstring of the function that skips.
+        "certified": from a sample of this picture that was compared with the exact
+        method, which may miss the worst place. "measured": from other clouds.
     """
 
     stage: str
@@ -142,13 +149,14 @@ class Skipped:
     of: int
     bound: float = 0.0
     unit: str = "displayed white"
+    how: Known = "proved"
 
     def __str__(self) -> str:
         """Give the row as one line of text."""
         return (
             f"{self.stage}: {self.skipped} of {self.of} {self.what}"
             f" skipped, error at most {self.bound:.2g}"
-            + (f" ({self.unit})" if self.bound else "")
+            + (f" ({self.unit}, {self.how})" if self.bound else "")
         )
 
 

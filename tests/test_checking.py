@@ -384,9 +384,12 @@ def test_a_zero_vector_is_refused_by_its_name() -> None:
 def test_a_row_of_the_report_is_one_line() -> None:
     row = Skipped("noise", "octaves", 2, 5, 0.0123)
     assert (
-        str(row)
-        == "noise: 2 of 5 octaves skipped, error at most 0.012 (displayed white)"
+        str(row) == "noise: 2 of 5 octaves skipped,"
+        " error at most 0.012 (displayed white, proved)"
     )
+    sampled = Skipped("march", "rays", 2, 5, 0.0123, how="certified")
+    assert str(sampled).endswith(" at most 0.012 (displayed white, certified)")
+    assert str(Skipped("eye", "balls", 2, 5)).endswith("error at most 0")
 
 
 def test_a_partial_call_is_checked_too() -> None:

@@ -145,7 +145,9 @@ def _peers(at: Array, where: str) -> list[Contender]:
         for kind, work in works.items():
             if where == "grid" or not kind.startswith("fBm"):
                 task = f"{kind} {where}"
-                found.append(Contender(task, "noise (C)", len(few), work, rival=True))
+                found.append(
+                    Contender(task, "noise (C)", len(few), work, rival=True, peer=True)
+                )
     if lite := peer("pyfastnoiselite.pyfastnoiselite"):
         places = np.ascontiguousarray(at.T, np.float32)
         for kind, own in (("Perlin", "Perlin"), ("simplex", "OpenSimplex2")):
@@ -153,7 +155,8 @@ def _peers(at: Array, where: str) -> list[Contender]:
             maker.noise_type = getattr(lite.NoiseType, f"NoiseType_{own}")
             maker.frequency = 1.0
             work = functools.partial(maker.gen_from_coords, places)
-            found.append(Contender(f"{kind} {where}", "pyfastnoiselite", len(at), work))
+            task = f"{kind} {where}"
+            found.append(Contender(task, "pyfastnoiselite", len(at), work, peer=True))
     return found
 
 
@@ -190,6 +193,7 @@ def _worley(where: str, contenders: Iterable[worley.Contender]) -> list[Contende
             c.run,
             functools.partial(_shaped_like, exact, c.run),
             rival=c.peer,
+            peer=c.peer,
         )
         for c in entered
     ]

@@ -189,9 +189,12 @@ def large(n: int) -> list[Contender]:
 
 SCATTERING = Subject(
     name="scattering",
+    title="light of every order: plans and stand-ins",
     about="CPU time of a solution or a picture, medians; error: relative RMSE of a"
     " picture against the finest solution, or against random paths less their noise",
     lists=((solutions, 64, 12), (against_paths, 64, 12), (large, 128, 16)),
     unit=MS,
     digits=2,
+    reference="the finest plan, 0.005 from an unbiased estimate at a depth of 0.25 in a"
+    " voxel; or random paths, whose noise is taken off",
 )

@@ -180,6 +180,7 @@ def _interpolated(rows: list[list[float]], x: float, y: float) -> float:
 
 SKIES = Subject(
     name="skies",
+    title="skies: rays or triangles, noise made anew, light along layers",
     about=(
         "CPU time per frame of 512x384, of 400000 points or of a sheet, medians; error:"
         " largest difference of u or v, of grey levels, median difference of light"
@@ -193,4 +194,5 @@ SKIES = Subject(
     ),
     unit=MS,
     digits=2,
+    reference="a ray per pixel, the literal sheet, and octaves at every sample",
 )

@@ -96,7 +96,10 @@ def second_pass_with_opengl(count: int, reference: Reference = None) -> list[Con
     for format, dtype, scale in (("RGBA32F", "f4", 1.0), ("RGBA8", "f1", 255.0)):
         draw = lean(gl.context(), lit, camera, dtype, scale)
         listed.append((f"moderngl {format} with readback on {name}", draw))
-    return [Contender(task, what, samples, work, reference) for what, work in listed]
+    return [
+        Contender(task, what, samples, work, reference, peer=True)
+        for what, work in listed
+    ]
 
 
 def first_pass_with_opengl(count: int, reference: Reference = None) -> list[Contender]:
@@ -110,7 +113,9 @@ def first_pass_with_opengl(count: int, reference: Reference = None) -> list[Cont
     )
     name = f'backend="gl" on {gl.renderer().split(" (")[0]}'
     return [
-        Contender(f"first pass N={count}", name, 1, lambda: work().light, reference)
+        Contender(
+            f"first pass N={count}", name, 1, lambda: work().light, reference, peer=True
+        )
     ]
 
 

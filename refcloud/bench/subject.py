@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from refcloud.bench.timing import Contender, Row, machine, timed
 
@@ -28,8 +30,8 @@ class Subject:
 
     Attributes
     ----------
-    name
-        The word.
+    name, title
+        The word, and what is compared, in a line.
     about
         One line: what a time is of and what an error is, for the table's head.
     lists
@@ -46,9 +48,19 @@ class Subject:
         Significant digits of the errors.
     rms
         Whether a column gives the errors' root mean square beside the largest.
+    reference
+        What errors count against, and how far that is from the truth.
+    one_task
+        Whether all rows do the same at different sizes: then the figure joins those of
+        a contender, and has one front; otherwise each task has its own.
+    summary
+        Writes more below the table; None for nothing.
+    figure
+        Draws a figure of its own; None for that of every subject.
     """
 
     name: str
+    title: str
     about: str
     lists: tuple[tuple[Callable[[int], list[Contender]], int, int], ...]
     peers: tuple[str, ...] = ()
@@ -56,9 +68,13 @@ class Subject:
     rate: tuple[str, float] | None = None
     digits: int = 1
     rms: bool = False
+    reference: str = ""
+    one_task: bool = False
+    summary: Callable[[Sequence[Row]], str] | None = None
+    figure: Callable[[Sequence[Row], str | os.PathLike[str]], Path] | None = None
 
 
-def run(subject: Subject, quick: bool = False) -> list[Row]:
+def run(subject: Subject, quick: bool = False, peers: bool = True) -> list[Row]:
     """Time every contender, the contenders of one list in turn.
 
     Parameters
@@ -67,6 +83,8 @@ def run(subject: Subject, quick: bool = False) -> list[Row]:
         What is measured.
     quick
         Whether small arrays and few rounds do, for a look at the table.
+    peers
+        Whether other libraries take part, where they are installed.
 
     Returns
     -------
@@ -74,7 +92,8 @@ def run(subject: Subject, quick: bool = False) -> list[Row]:
     """
     rows = []
     for make, full, small in subject.lists:
-        contenders = make(small if quick else full)
+        listed = make(small if quick else full)
+        contenders = [c for c in listed if peers or not c.peer]
         rows += timed(contenders, QUICK_ROUNDS if quick else ROUNDS)
     return sorted(rows, key=lambda row: row.task)
 
@@ -110,12 +129,34 @@ def table(subject: Subject, rows: list[Row]) -> str:
         errors = [row.error, row.rms] if subject.rms else [row.error]
         line += ["-" if e is None else f"{e:.{subject.digits}g}" for e in errors]
         lines.append(line)
+    text = columns(lines, 2)
+    head_lines = [machine(subject.peers), subject.about]
+    if subject.reference:
+        head_lines.append(f"reference: {subject.reference}")
+    if subject.summary is not None:
+        text.append(subject.summary(rows))
+    return "\n".join([*head_lines, *text])
+
+
+def columns(lines: Sequence[Sequence[str]], left: int) -> list[str]:
+    """Write cells as lines of text, in columns; the first `left` ones start alike.
+
+    Parameters
+    ----------
+    lines
+        Cells, as many in each line.
+    left
+        How many columns start at the left; numbers end at the right.
+
+    Returns
+    -------
+    The lines.
+    """
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
-    text = [
+    return [
         "  ".join(
-            cell.ljust(width) if k < 2 else cell.rjust(width)
+            cell.ljust(width) if k < left else cell.rjust(width)
             for k, (cell, width) in enumerate(zip(line, widths, strict=True))
         ).rstrip()
         for line in lines
     ]
-    return "\n".join([machine(subject.peers), subject.about, *text])

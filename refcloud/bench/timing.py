@@ -37,6 +37,8 @@ class Contender:
         Whether ratios of the task are taken to it.
     distance
         How far a result is from the reference's; None for the largest difference.
+    peer
+        Whether it is of another library, and takes part only where peers are asked for.
     """
 
     task: str
@@ -46,6 +48,7 @@ class Contender:
     reference: Callable[[], Any] | None = None
     rival: bool = False
     distance: Callable[[Any, Any], float] | None = None
+    peer: bool = False
 
 
 @dataclass(frozen=True)

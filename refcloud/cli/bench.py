@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from refcloud import bench
-from refcloud.bench import skipping, stability
+from refcloud.bench import certificates, skipping, stability
 from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import ready, say
 from refcloud.cli.parser import Command
 from refcloud.refusal import complaint
 
-ABOUT = "Measure run time against error, beside other libraries where installed."
+ABOUT = "Measure run time against error; without a name list what can be measured."
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,13 @@ class Measurement:
         Small arrays and few rounds, for a look at the table.
     json
         Rows for machines instead of a table.
+    peers
+        Other libraries and OpenGL as well, those that are installed.
     """
 
     quick: bool = False
     json: bool = False
+    peers: bool = False
 
 
 OPTIONS = options_of(Measurement)
@@ -46,13 +49,14 @@ PLOT = FileOption(
 FIGURES = (".png",)
 STABILITY = "stability"  # a map of errors, without times
 SKIPPING = "skipping"  # what each named scene leaves out
-NAMES = (*bench.SUBJECTS, STABILITY, SKIPPING)
+CERTIFICATES = "certificates"  # counts of errors, without times
+NAMES = (*bench.SUBJECTS, STABILITY, SKIPPING, CERTIFICATES)
 
 
 def command() -> Command:
     """Give the command's argument and options."""
     made = Command("bench", ABOUT)
-    made.argument("WHAT", "what is measured: " + ", ".join(NAMES))
+    made.argument("WHAT", "what is measured: " + ", ".join(NAMES), optional=True)
     made.group("the measurement", "", (*OPTIONS, PLOT))
     return made
 
@@ -60,6 +64,10 @@ def command() -> Command:
 def run(words: Sequence[str]) -> int:
     """Measure, and print the rows."""
     given = command().parse(words)
+    if not given.arguments:
+        for name, what in subjects().items():
+            say(f"{name:12}  {what}")
+        return 0
     (name,) = given.arguments
     if name not in NAMES:
         expected = "one of " + ", ".join(NAMES)
@@ -71,14 +79,40 @@ def run(words: Sequence[str]) -> int:
         return _stability(how, figure)
     if name == SKIPPING:
         return _skipping(how, figure)
+    if name == CERTIFICATES:
+        return _certificates(how, figure)
     subject = bench.SUBJECTS[name]
-    rows = bench.run(subject, how.quick)
+    rows = bench.run(subject, how.quick, how.peers)
     if how.json:
         say(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))
     else:
         say(bench.table(subject, rows))
     if figure is not None:
         say(str(bench.plot(subject, rows, figure)))
+    return 0
+
+
+def subjects() -> dict[str, str]:
+    """Say in a line what each name measures."""
+    found = {name: subject.title for name, subject in bench.SUBJECTS.items()}
+    found[STABILITY] = "where each algorithm keeps its digits: errors alone"
+    found[CERTIFICATES] = "how often a certificate fails, on generated scenes"
+    return found
+
+
+def _certificates(how: Measurement, figure: Path | None) -> int:
+    """Draw generated scenes, and count those that are off by more than was asked."""
+    if figure is not None:
+        advice = "leave it out: counts have no figure"
+        raise ValueError(
+            complaint(PLOT.flag, "none beside certificates", "one", advice)
+        )
+    found = certificates.tallies(how.quick)
+    if how.json:
+        rows = [{"kind": k, **dataclasses.asdict(t)} for k, t in found.items()]
+        say(json.dumps(rows, indent=1))
+    else:
+        say(certificates.table_of(found))
     return 0
 
 

@@ -175,7 +175,7 @@ def _savings(carried: list[Sized], count: int, worth: float) -> list[Skipped]:
     if left := sum(found.whole - found.pixels for found in carried):
         what, of = "pixels of the lights' buffers", sum(f.whole for f in carried)
         bound = worth * max(found.bound for found in carried)
-        rows.append(Skipped("light", what, left, of, bound))
+        rows.append(Skipped("light", what, left, of, bound, how="certified"))
     return rows
 
 

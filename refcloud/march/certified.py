@@ -113,7 +113,7 @@ def by_slices(
         bound = certificate.bound(tried[slicing], found)
         if bound <= certificate.tolerance:
             count = len(found[1])
-            row = Skipped("march", "exact rays", count, count, bound)
+            row = Skipped("march", "exact rays", count, count, bound, how="certified")
             note = (
                 f"march: slices, {slicing.finer:g} samples of the image and"
                 f" {slicing.scale} of light per cell; off by {tried[slicing]:.2g} at"
@@ -204,7 +204,7 @@ def told(
     hidden = HIDDEN * certificate.tolerance
     what = "passages behind opaque fronts"
     rows = (
-        Skipped("march", "exact rays", count, count, bound),
+        Skipped("march", "exact rays", count, count, bound, how="certified"),
         Skipped("march", "passages through empty slabs", counts.empty, counts.all),
         Skipped("march", what, counts.hidden, counts.all, hidden),
     )

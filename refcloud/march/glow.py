@@ -2,10 +2,10 @@
 
     L = int sigma' rho T' J(x, -d) dt
 
-J is kept as few numbers per voxel (`refcloud.transport`). With tolerance 0 every ray
-evaluates them for its own direction, at Gauss points in every space between voxel
-centres. Otherwise J is made for directions in a lattice over the view and interpolated
-between the nearest four, and a ray takes one sample in every half voxel.
+J is kept as few numbers per voxel (`refcloud.transport`). The exact way evaluates them
+for every ray's own direction, at Gauss points in every space between voxel centres. The
+others make J for directions in a lattice over the view, interpolate it between the
+nearest four, and take samples at even distances along a ray.
 """
 
 from __future__ import annotations
@@ -29,12 +29,26 @@ from refcloud.transport.scattering import harmonics_toward, source_terms
 Numbers = NDArray[Any]
 
 UP_TO = integrals_up_to(POINTS, POINTS)
-STRIDE = 0.5  # of a voxel's shortest edge, between samples
 SAMPLES = 1 << 19  # at a time: some 100 MB of temporaries
 DEEPEST = 16.0  # optical depth behind which less than 1e-7 shows
-# Radians between nodes of direction: J is interpolated linearly, and its error is this
-# squared, times about L (L + 1) / 8 of what varies: some thousandths of J.
-NODES_APART = 0.15
+
+
+@dataclass(frozen=True)
+class Way:
+    """How finely J is sampled.
+
+    Attributes
+    ----------
+    stride
+        Between samples along a ray, of a voxel's shortest edge: samples stand in the
+        middle of their stretches, so the error falls with its square.
+    apart
+        Radians between nodes of direction: J is interpolated linearly, and its error is
+        this squared, times about L (L + 1) / 8 of what varies.
+    """
+
+    stride: float
+    apart: float
 
 
 @dataclass(frozen=True)
@@ -62,7 +76,7 @@ def glow(
     origins: Array,
     directions: Array,
     light: ScatteredLight,
-    tolerance: float,
+    way: Way | None,
 ) -> Array:
     """Integrate the solved source along rays, unchecked.
 
@@ -74,8 +88,8 @@ def glow(
         Shape (N, 3), scene units; unit vectors.
     light
         Solved for this cloud.
-    tolerance
-        0 for Gauss points and every ray's own direction.
+    way
+        None for Gauss points and every ray's own direction.
 
     Returns
     -------
@@ -85,7 +99,7 @@ def glow(
     if not len(origins) or not cloud.density.any():
         return radiance
     grid = lattice(cloud)
-    if tolerance == 0.0:
+    if way is None:
         terms = source_terms(light)
         chunk = most_rays(grid)
         for start in range(0, len(origins), chunk):
@@ -95,12 +109,12 @@ def glow(
             weights = [harmonics_toward(light, -d, k) for k in range(len(terms))]
             radiance[part] = _sum(light, samples, terms, weights, len(o), thin=True)
         return radiance
-    for rays, corners, weights in _tiles(directions):
+    for rays, corners, weights in _tiles(directions, way.apart):
         terms = [
             np.tensordot(harmonics_toward(light, -corners, k), values, axes=1)
             for k, values in enumerate(source_terms(light))
         ]
-        apart = STRIDE * float(cell_size(cloud).min())
+        apart = way.stride * float(cell_size(cloud).min())
         across = float(np.sqrt(np.square(cloud.upper - cloud.lower).sum()))
         chunk = max(1, int(SAMPLES / (across / apart + 1.0)))
         for start in range(0, len(rays), chunk):
@@ -191,11 +205,11 @@ def by_steps(grid: Lattice, origins: Array, directions: Array, apart: float) -> 
     return Samples(ray, origins[ray] + t[:, None] * directions[ray], column, mass)
 
 
-def _tiles(directions: Array) -> list[tuple[Numbers, Array, Array]]:
+def _tiles(directions: Array, apart: float) -> list[tuple[Numbers, Array, Array]]:
     """Sort rays by direction: which rays, four directions around, weights (n, 4).
 
     Directions are seen on the face of a cube that they hit; a lattice on each face has
-    nodes no farther apart than `NODES_APART`.
+    nodes no farther apart than `apart`.
     """
     tiles = []
     axis = np.argmax(np.abs(directions), axis=1)
@@ -208,7 +222,7 @@ def _tiles(directions: Array) -> list[tuple[Numbers, Array, Array]]:
             d = directions[rays]
             at = d[:, across] / np.abs(d[:, main, None])
             low, high = at.min(axis=0), at.max(axis=0)
-            steps = np.maximum(np.ceil((high - low) / NODES_APART), 1.0).astype(int)
+            steps = np.maximum(np.ceil((high - low) / apart), 1.0).astype(int)
             size = np.maximum((high - low) / steps, 1e-12)
             place = np.minimum(((at - low) / size).astype(int), steps - 1)
             share = (at - low) / size - place

@@ -9,17 +9,22 @@ import numpy as np
 
 from refcloud.camera import AnyCamera
 from refcloud.cloudmap import VoxelGrid
-from refcloud.conventions import Array, Observer
-from refcloud.march.glow import glow
+from refcloud.conventions import Array, Observer, Skipped
+from refcloud.march.glowing import glow_within
 from refcloud.march.marched import Marched, marched
 from refcloud.march.mixing import PHYSICAL, Mixing
 from refcloud.metaballs import Metaballs, sampled_map
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.transport import LightVolume, ScatteredLight, scattered_light
+from refcloud.transport import PLANS, LightVolume, ScatteredLight, scattered_light
+from refcloud.transport.cut_out import thickest_voxel
+from refcloud.transport.plans import plan_for
 from refcloud.transport.scattering import report_of
 
 Scattering = Literal["single", "multiple"] | ScatteredLight | tuple[ScatteredLight, ...]
+# Shares of a tolerance. Solutions gain most: each is several times as long as the next.
+SOLVED, ALONG_RAYS = 0.5, 0.5
+FINEST = 128  # directions of the plan "finest"
 
 
 def marched_multiple(
@@ -51,7 +56,8 @@ def marched_multiple(
     scattering
         "multiple", or light that was solved before for this cloud.
     suns, medium, ambient, mixing, tolerance, background, observe, camera, volumes
-        As `marched`; half of the tolerance goes to the solution.
+        As `marched`; of the tolerance half goes to the solution, and a quarter each to
+        the light that was scattered once and to that which was scattered more often.
 
     Returns
     -------
@@ -84,14 +90,24 @@ def marched_multiple(
         ),
         ambient=None,
         mixing=mixing,
-        tolerance=0.5 * tolerance,
+        tolerance=0.5 * ALONG_RAYS * tolerance,
         observe=observe,
         camera=camera,
         volumes=volumes,
         shape=shape,
     )
     # 2. Light that was scattered more often.
-    radiance = found.radiance + glow(grid, origins, directions, light, tolerance)
+    rows = (camera.height, camera.width) if camera is not None else (1, len(origins))
+    glowing, told = glow_within(
+        grid,
+        origins,
+        directions,
+        light,
+        0.5 * ALONG_RAYS * tolerance,
+        rows=rows,
+        observe=observe,
+    )
+    radiance = found.radiance + glowing
     # 3. What is seen through the cloud; outside light of the forward peak goes with it.
     through = found.transmittance ** (kept[:1] if grey else kept)
     if ambient is not None:
@@ -100,8 +116,17 @@ def marched_multiple(
         radiance = radiance + through * background
     if np.ndim(medium.sigma_t) == 0:
         through = through[:, :1]
+    told = (*found.skipped, *told)
+    if tolerance > 0.0 and not isinstance(scattering, (ScatteredLight, tuple)):
+        depth = thickest_voxel(grid, medium)
+        if plan_for(SOLVED * tolerance, suns, medium, depth) != PLANS["finest"]:
+            left = FINEST - len(light.solutions[0].level.directions.vectors)
+            what, bound = "directions of the finest solution", SOLVED * tolerance
+            told += (Skipped("light", what, left, FINEST, bound, how="measured"),)
     notes = (*found.notes, f"scattered light: {report_of([light])}")
-    return replace(found, radiance=radiance, transmittance=through, notes=notes)
+    return replace(
+        found, radiance=radiance, transmittance=through, skipped=told, notes=notes
+    )
 
 
 def lit_for(
@@ -123,7 +148,7 @@ def lit_for(
             medium=medium,
             sky=ambient,
             ground=ambient,
-            tolerance=0.5 * tolerance,
+            tolerance=SOLVED * tolerance,
         )
     light = scattering
     same = (

@@ -47,7 +47,14 @@ def by_quadrature(
         found = shafted(task, tables, way.points, least)
         bound = certificate.bound(tried[way], found)
         if bound <= certificate.tolerance:
-            row = Skipped("march", "exact columns to the suns", count, count, bound)
+            row = Skipped(
+                "march",
+                "exact columns to the suns",
+                count,
+                count,
+                bound,
+                how="certified",
+            )
             note = (
                 f"march: quadrature, {way.finer} samples of light per cell along the"
                 f" suns' rays, {way.points} Gauss points; off by {tried[way]:.2g} at"

@@ -86,7 +86,7 @@ def fbm_grid(
     --------
     >>> noise, skipped = fbm_grid([0.0, 0.5], [0.0], finest=0.5, normalize="none")
     >>> print(skipped[0])
-    noise: 2 of 4 octaves too fine to show skipped, error at most 0.38 (noise)
+    noise: 2 of 4 octaves too fine to show skipped, error at most 0.38 (noise, proved)
     """
     how = (kind, time, seed, octaves, persistence, normalize, period, dtype, finest)
     return _sum_grid((x, y, z), *how, absolute=False)

@@ -165,7 +165,7 @@ def octave_sum_grid(
     --------
     >>> noise, skipped = octave_sum_grid([0.0, 0.5], [0.0], [0.0], finest=0.5)
     >>> print(skipped[0])
-    noise: 2 of 4 octaves too fine to show skipped, error at most 0.38 (noise)
+    noise: 2 of 4 octaves too fine to show skipped, error at most 0.38 (noise, proved)
     """
     _refuse_long(period, octaves)
     peak = PEAKS[interpolant] ** 3

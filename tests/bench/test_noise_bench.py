@@ -48,4 +48,4 @@ def test_the_table_names_machine_and_every_row() -> None:
     rows = timed(LISTS[0][0](4), rounds=1)
     text = table(SUBJECTS["noise"], rows)
     assert text.startswith(machine()[:10])
-    assert len(text.splitlines()) == len(rows) + 3
+    assert len(text.splitlines()) == len(rows) + 4

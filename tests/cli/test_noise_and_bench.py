@@ -9,6 +9,7 @@ from typing import get_args
 import pytest
 
 from refcloud.cli import main
+from refcloud.cli.bench import NAMES
 from refcloud.image import read_png
 from refcloud.noise_pictures import Kind, noise_picture
 
@@ -45,6 +46,15 @@ def test_bench_prints_a_table_and_rows(capsys: pytest.CaptureFixture[str]) -> No
     # Of values in [-1, 1]; float32 holds 1.2e-7 and a sum of corners some ten of it.
     assert all(row["error"] < 1e-5 for row in ours)
     assert len(ours) > 3
+
+
+def test_bench_without_a_name_lists_what_there_is(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["bench"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(NAMES)
+    assert all(len(line.split()) > 3 for line in lines)
 
 
 @pytest.mark.parametrize(

@@ -180,8 +180,9 @@ def test_single_precision_is_a_saving_that_is_close() -> None:
 
 def test_skipped_rows_say_what_was_left_out() -> None:
     rows = octave_march(BLOB, EYE, suns=(SUN,), tolerance=0.5, **HOW)[2]
-    empty, ended = rows
+    empty, ended, rounded = rows
     assert isinstance(empty, Skipped)
+    assert (ended.how, rounded.how) == ("proved", "measured")
     assert 0 < empty.skipped < empty.of
     assert 0 < ended.skipped < ended.of
     # No ray that goes on behind an opaque front can find more than that.

@@ -9,7 +9,7 @@ from refcloud.bench.scattering import SUN, apart, lumpy, view
 from refcloud.march import integrate
 from refcloud.optics import Medium, Sun, phase
 from refcloud.transport import PLANS, scattered_light, trace_paths
-from refcloud.transport.plans import ERRORS, FEW, plan_for, raised
+from refcloud.transport.plans import ERRORS, FEW, error_of, plan_for
 
 
 def picture(grid, sun: Sun, medium: Medium, plan: str) -> np.ndarray:
@@ -20,16 +20,15 @@ def picture(grid, sun: Sun, medium: Medium, plan: str) -> np.ndarray:
 
 def test_a_tolerance_takes_the_cheapest_plan_that_keeps_it() -> None:
     medium, sun = Medium(1.0, phase="isotropic"), (Sun([0, 1, 0]),)
-    chosen = [plan_for(t, sun, medium) for t in (0.0, 1e-3, 0.01, 0.03, 0.06)]
-    assert chosen == [
-        PLANS[name] for name in ("finest", "fine", "reference", "standard", "quick")
-    ]
+    tolerances = (0.0, 1e-5, 1e-3, 0.01, 0.03, 0.06)
+    for depth, expected in (
+        (0.125, ("finest", "finer", "fine", "reference", "standard", "quick")),
+        (1.0, ("finest", "finer", "fine", "reference", "reference", "reference")),
+    ):
+        chosen = [plan_for(t, sun, medium, depth) for t in tolerances]
+        assert chosen == [PLANS[name] for name in expected]
     narrow = Medium(1.0, g=0.85, phase="hg")
     assert plan_for(1.0, sun, narrow) == PLANS["reference"]
-    thick = [plan_for(t, sun, medium, 0.7) for t in (1e-3, 0.01, 0.07, 0.16)]
-    assert thick == [
-        PLANS[name] for name in ("finest", "reference", "standard", "quick")
-    ]
 
 
 @pytest.mark.slow
@@ -43,27 +42,25 @@ def test_plans_keep_their_errors(seed: int, sun: tuple, g: float) -> None:
     medium = Medium(4.0, g=g, phase="hg")
     exact = picture(grid, light, medium, "finest")
     most = float(phase(medium, np.array(1.0))) * float(light.irradiance.max())
-    for name, error in ERRORS.items():
+    for name in ERRORS:
         if name not in FEW or g <= 0.6:
             off = np.abs(picture(grid, light, medium, name) - exact).max()
-            assert off <= error * max(most, 1.0), name
+            assert off <= error_of(name, 0.25) * max(most, 1.0), name
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("n", "sigma"), [(8, 20.0), (12, 20.0), (24, 20.0)])
 @pytest.mark.parametrize("g", [-0.3, 0.0, 0.6])
 def test_thick_voxels_keep_the_errors_that_are_counted(n, sigma, g) -> None:
-    """Seen at most 0.72 of what `plan_for` counts with."""
     grid, sun = lumpy(n, 7), Sun([0.62, 0.55, -0.1])
     medium = Medium(sigma, g=g, phase="hg")
     depth = sigma * float(grid.density.max()) * 2.0 / n
     exact = picture(grid, sun, medium, "finest")
     most = float(phase(medium, np.array(1.0 if g >= 0 else -1.0)))
     most *= float(sun.irradiance.max())
-    for name, error in ERRORS.items():
-        if name != "fine":
-            off = np.abs(picture(grid, sun, medium, name) - exact).max()
-            assert off <= error * raised(depth) * max(most, 1.0), name
+    for name in ERRORS:
+        off = np.abs(picture(grid, sun, medium, name) - exact).max()
+        assert off <= error_of(name, depth) * max(most, 1.0), name
 
 
 @pytest.mark.slow
