@@ -64,6 +64,23 @@ def rays_behind_an_opaque_front() -> Found:
     return Found(found[0], whole[0], found[2])
 
 
+@proof("march", "samples in double precision", together=True)
+def samples_in_double_precision() -> Found:
+    found, whole = (
+        octave_march(BLOB, EYE, suns=(SUN,), tolerance=t, **OCTAVES)
+        for t in (0.01, 0.0)
+    )
+    return Found(found[0], whole[0], found[2])
+
+
+@proof("march", "exact rays through solved light", together=True)
+@proof("light", "directions of the finest solution", together=True)
+def cheaper_solved_light() -> Found:
+    how = {"medium": dataclasses.replace(MEDIUM, sigma_t=2.0), "scattering": "multiple"}
+    found, rows = marched(BLOB, EYE, tolerance=0.2, **how)
+    return Found(found, marched(BLOB, EYE, **how)[0], rows)
+
+
 @proof("march", "exact rays", together=True)
 def exact_rays_by_slabs() -> Found:
     found, rows = marched(BLOB, FRONT, medium=THICK, tolerance=0.2)
