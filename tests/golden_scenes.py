@@ -6,8 +6,10 @@ import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from refcloud import (
     Camera,
@@ -21,7 +23,7 @@ from refcloud import (
 from refcloud.bench import stability
 from refcloud.figure import find_figure
 from refcloud.raster import framebuffer, splat
-from refcloud.scenes import SCENES, Model, View
+from refcloud.scenes import SCENES, Model, View, man_net, man_passes
 
 FIXTURES = Path(__file__).parent / "fixtures"
 VIEW, SMALL_VIEW = View(192, 144), View(128, 96)
@@ -72,6 +74,17 @@ def fitted(name: str, balls: str) -> Picture:
     return SCENES[name].draw(Model(clouds), VIEW)
 
 
+def few_balls(name: str, stored: str) -> Picture:
+    """Draw a diagram of the network or of a pass from stored balls."""
+    balls = load_metaballs(FIXTURES / f"{stored}.npz")
+    found = SimpleNamespace(centers=balls.centers, epochs=0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(man_net, "adaptive_kmeans", lambda *_, **how: found)
+        patch.setattr(man_net, "approximate", lambda *_, **how: balls)
+        patch.setattr(man_passes, "approximate", lambda *_, **how: balls)
+        return find_figure(name).draw(SMALL_VIEW)
+
+
 def unfitted(name: str, view: View = VIEW) -> Picture:
     """Draw a scene whose clouds come straight from the noise."""
     scene = SCENES[name]
@@ -102,6 +115,14 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
         f"man-{number}": partial(find_figure(f"man-{number}").draw, VIEW)
         for number in ("02", "03", "05")
     },
+    **{
+        name: partial(find_figure(name).draw, SMALL_VIEW)
+        for name in ("shader-01", "shader-02")
+    },
+    "man-06": partial(few_balls, "man-06", "man-06-balls"),
+    "man-07": partial(few_balls, "man-07", "man-08-cloud"),
+    "man-11": partial(few_balls, "man-11", "man-11-balls"),
+    "man-12": partial(few_balls, "man-12", "man-11-balls"),
     "man-04": partial(unfitted, "man-04"),
     "man-08": partial(fitted, "man-08", "man-08"),
     "man-09": partial(fitted, "man-09", "man-09"),
@@ -112,7 +133,15 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
     "multiple": partial(unfitted, "multiple", View(64, 48)),
     **{
         f"shader-{name}": partial(unfitted, f"shader-{name}", SMALL_VIEW)
-        for name in ("a", "b", "c", "d", "dome", "e", "fog", "lit")
+        for name in (
+            *("a", "b", "c", "cover", "d", "dome", "e", "fog", "lit", "particles"),
+            *("poles", "raw", "volume"),
+        )
     },
+    **{
+        f"simple-{name}": partial(unfitted, f"simple-{name}", SMALL_VIEW)
+        for name in ("noise", "smoothed", "interpolated", "octaves", "filtered")
+    },
+    "simple-quad": partial(unfitted, "simple-quad", SMALL_VIEW),
     "simple-sky": partial(unfitted, "simple-sky", SMALL_VIEW),
 }

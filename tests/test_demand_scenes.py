@@ -219,9 +219,7 @@ def test_the_farthest_cloud_is_drawn_first() -> None:
 
 
 def test_the_hero_stands_over_its_field() -> None:
-    camera = Camera(
-        demand_hero.cumulus.EYE, demand_hero.cumulus.TARGET, width=48, height=36
-    )
+    camera = Camera(demand_hero.OWN.eye, demand_hero.OWN.target, width=48, height=36)
     picture = drawn("", View(48, 36, camera))
     assert [note.split(":")[0] for note in picture.notes] == [
         *["field"] * 5,

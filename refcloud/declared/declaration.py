@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -65,7 +65,8 @@ class Cloud:
 class Declaration:
     """A scene as a file says it; clouds stand in their order, the farthest first.
 
-    Without a camera the last cloud is framed.
+    Without a camera the last cloud is framed. With scattering "multiple" light of every
+    order is solved.
     """
 
     name: str
@@ -76,3 +77,4 @@ class Declaration:
     medium: Medium | None = None
     look: Look = field(default_factory=Look)
     sky: Sky = field(default_factory=Sky)
+    scattering: Literal["single", "multiple"] = "single"

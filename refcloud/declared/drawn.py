@@ -20,6 +20,8 @@ from refcloud.lighting import Haze, named
 from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
 from refcloud.scene import Model, Motion, Scene, View
 
+LAST = "cloud"
+
 
 def scene_from(declared: Declaration | Changed) -> Scene:
     """Make a scene of a declaration: its eye and suns may turn, wind may blow.
@@ -58,10 +60,18 @@ def model(declared: Declaration) -> Model:
         balls = _balls(cloud, grid)
         seconds["generate"] += middle - start
         seconds["approximate"] += time.perf_counter() - middle
-        clouds[str(number)] = balls
+        name = name_of(declared, number)
+        clouds[name] = balls
         skipped += [*grid.skipped, *balls.skipped]
-        notes.append(f"cloud {number}: {len(balls)} balls")
+        what = "voxels" if cloud.balls is None else "balls"
+        even = ", densities not fitted" if cloud.place.even else ""
+        notes.append(f"{name}: {len(balls)} {what}{even}")
     return Model(clouds, tuple(notes), tuple(skipped), seconds)
+
+
+def name_of(declared: Declaration, number: int) -> str:
+    """Name a cloud: the last, which is nearest, is "cloud", others "field 0", ..."""
+    return LAST if number == len(declared.clouds) - 1 else f"field {number}"
 
 
 def _balls(cloud: Cloud, grid: VoxelGrid) -> Metaballs:
@@ -83,14 +93,14 @@ def eye(declared: Declaration, model: Model, view: View) -> Camera:
     """Give the declared camera, or frame the last cloud."""
     if declared.camera is not None:
         return Camera(**declared.camera, width=view.width, height=view.height)
-    last = model.clouds[str(len(declared.clouds) - 1)]
+    last = model.clouds[LAST]
     return framed(last, view.width, view.height)
 
 
 def draw(declared: Declaration, model: Model, view: View) -> Picture:
     """Light and draw the clouds in their order, before the sky."""
     base = declared.look if view.look is None else named(view.look)
-    last = model.clouds[str(len(declared.clouds) - 1)]
+    last = model.clouds[LAST]
     medium, notes = view.medium or declared.medium, ()
     if medium is None:
         medium, note = default_medium(last, base)
@@ -100,10 +110,11 @@ def draw(declared: Declaration, model: Model, view: View) -> Picture:
         air = cloud.place.air
         layers.append(
             Layer(
-                model.clouds[str(number)],
+                model.clouds[name_of(declared, number)],
                 medium,
                 dataclasses.replace(base, **cloud.look),
                 None if air is None else Haze(declared.sky.haze, air),
+                scattering=view.scattering or declared.scattering,
             )
         )
     picture = draw_layers(

@@ -40,6 +40,7 @@ MOST_CLOUDS = 1000
 # Parameters that a file cannot hold, or that stand in a table of their own.
 NOT_TYPED = ("observe", "grid", "width", "height")
 LookName = Literal["cumulus", "man"]
+Scattering = Literal["single", "multiple"]
 
 
 def load_scene(path: str | Path) -> Declaration | Changed:
@@ -85,7 +86,10 @@ def _declared(table: dict[str, Any]) -> Declaration | Changed:
         raise ValueError(complaint("format", expected, f"{form[0]!r}, {form[1]!r}"))
     if "kind" in table:
         return _changed(table)
-    known = ("name", "title", "camera", "sun", "medium", "look", "sky", "cloud")
+    known = (
+        *("name", "title", "scattering", "camera", "sun", "medium"),
+        *("look", "sky", "cloud"),
+    )
     _refuse_unknown("", table, known)
     clouds = _tables("cloud", table.get("cloud", []))
     if not 1 <= len(clouds) <= MOST_CLOUDS:
@@ -108,6 +112,7 @@ def _declared(table: dict[str, Any]) -> Declaration | Changed:
         None if medium is None else Medium(**checked_table("medium", medium, Medium)),
         _look("look", table.get("look", {})),
         Sky(**checked_table("sky", sky, Sky)),
+        check("scattering", table.get("scattering", "single"), Scattering),
     )
 
 

@@ -46,6 +46,8 @@ def save_scene(path: str | Path, scene: Declaration | Changed) -> Path:
 def _lines(scene: Declaration) -> list[str]:
     lines = [f'format = "{FORMAT}"', f"version = {VERSION}"]
     lines += [f"name = {_value(scene.name)}", f"title = {_value(scene.title)}"]
+    if scene.scattering != "single":
+        lines += [f"scattering = {_value(scene.scattering)}"]
     if scene.camera is not None:
         lines += _section("[camera]", scene.camera)
     for sun in scene.suns:

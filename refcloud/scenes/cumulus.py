@@ -10,60 +10,134 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from typing import Literal
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated, Literal
 
 import numpy as np
 
 from refcloud.camera import Camera
+from refcloud.checking import check_fields
 from refcloud.cloudmap import generate
 from refcloud.compose import Layer, draw_layers
-from refcloud.conventions import Skipped
+from refcloud.conventions import Positive, Range, Seed, Skipped, Vector
+from refcloud.declared import Kind, enter_kind
 from refcloud.image import Picture
 from refcloud.lighting import Haze, Look, named
 from refcloud.lighting.look import GROUND_LIGHT, SKY_LIGHT
-from refcloud.metaballs import approximate, errors_of_fit, placed, prune
+from refcloud.metaballs import Metaballs, approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium, Sun
 from refcloud.render import SUN
-from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.scene import Model, Motion, View
 from refcloud.sky import Sky
 from refcloud.transport.plans import PLANS
 
-# The cloud: its seed was chosen by eye among 24, as was the turn.
-SEED, COUNT, TURN = 12, 1000, math.radians(20.0)
-SIGMA_T = 1.2  # 1 / scene unit: balls of optical depth 1 to 5
-# Solved light: what is lost to a little absorption draws the folds between lumps, and
-# a weaker sun is enough where nothing else is lost.
-SOLVED_MEDIUM = Medium(2.4, 0.97)
-SOLVED_SUN = Sun(SUN.direction, 0.6 * SUN.irradiance)
 SOLVED = {"relief": 0.4, "sky_light": 1.3 * SKY_LIGHT, "ground_light": GROUND_LIGHT}
 # Of the light, whatever the tolerance of the picture: that chooses its precision alone.
 PLAN, SINGLE_PRECISION = PLANS["standard"], 1e-5
-EYE, TARGET = (0.0, -16.0, 130.0), (1.0, 19.0, 0.0)
 HAZE = Sky().haze
-HERO_AIR, FIELD_AIR = 1500.0, 900.0  # scene units over which light falls to 1/e
-
-# The field: seed, x, z and scale of each small cloud, farthest first. They give scale
-# and a horizon; without them the large cloud floats.
-FIELD = (
-    (20, 20.0, -700.0, 1.3),
-    (11, -60.0, -560.0, 1.2),
-    (18, 205.0, -420.0, 1.1),
-    (4, -150.0, -330.0, 1.0),
-    (7, 95.0, -300.0, 0.75),
-)
-FIELD_COUNT, FIELD_VOXEL = 300, 2.0
 FIELD_BUFFERS = {"buffer": 96, "sky_buffer": 64}  # pixels: they are seen small
 
 
-def model() -> Model:
+@dataclass(frozen=True)
+class Placed:
+    """A cloud of the scene: which, where, how large, how turned, in how much air.
+
+    Attributes
+    ----------
+    seed
+        Which cloud.
+    x, z
+        Its place on the ground.
+    scale
+        Factor on its size.
+    turn
+        About y.
+    air
+        Distance over which its light falls to 1/e.
+    """
+
+    seed: Seed
+    x: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
+    z: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
+    scale: Annotated[float, Positive] = 1.0
+    turn: Annotated[float, Range(-7.0, 7.0, "radians")] = 0.0
+    air: Annotated[float, Positive] = 900.0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
+class Cumulus:
+    """A large cloud of metaballs over small ones.
+
+    Attributes
+    ----------
+    eye, target
+        The camera.
+    hero, field
+        The large cloud, and the small ones, farthest first.
+    count, field_count
+        Metaballs of the large cloud and of each small one.
+    field_voxel
+        Edge of a voxel of the small ones.
+    sun, medium
+        The light, and what clouds are made of.
+    single_sun, single_medium
+        Those of light that is scattered once.
+    """
+
+    eye: Vector
+    target: Vector
+    hero: Placed
+    field: tuple[Placed, ...]
+    count: Annotated[int, Range(1, 100_000)]
+    field_count: Annotated[int, Range(1, 100_000)]
+    field_voxel: Annotated[float, Positive]
+    sun: Sun
+    medium: Medium
+    single_sun: Sun
+    single_medium: Medium
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+OWN = Cumulus(
+    eye=np.array([0.0, -16.0, 130.0]),
+    target=np.array([1.0, 19.0, 0.0]),
+    # Its seed was chosen by eye among 24, as was the turn.
+    hero=Placed(12, turn=math.radians(20.0), air=1500.0),
+    # They give scale and a horizon; without them the large cloud floats.
+    field=(
+        Placed(20, 20.0, -700.0, 1.3),
+        Placed(11, -60.0, -560.0, 1.2),
+        Placed(18, 205.0, -420.0, 1.1),
+        Placed(4, -150.0, -330.0, 1.0),
+        Placed(7, 95.0, -300.0, 0.75),
+    ),
+    count=1000,
+    field_count=300,
+    field_voxel=2.0,
+    # What solved light loses to a little absorption draws the folds between lumps, and
+    # a weaker sun is enough where nothing else is lost.
+    sun=Sun(SUN.direction, 0.6 * SUN.irradiance),
+    medium=Medium(2.4, 0.97),
+    single_sun=SUN,
+    single_medium=Medium(1.2),  # balls of optical depth 1 to 5
+)
+
+
+def model(of: Cumulus = OWN) -> Model:
     """Generate and approximate the clouds of the scene."""
     seconds: dict[str, float] = {}
     notes: list[str] = []
     skipped: list[Skipped] = []
     clouds = {}
-    names = ["cloud", *(f"field {k}" for k in range(len(FIELD)))]
-    small = ((row[0], FIELD_VOXEL, FIELD_COUNT) for row in FIELD)
-    recipes = [(SEED, None, COUNT), *small]
+    names = ["cloud", *(f"field {k}" for k in range(len(of.field)))]
+    small = ((row.seed, of.field_voxel, of.field_count) for row in of.field)
+    recipes = [(of.hero.seed, None, of.count), *small]
     for name, (seed, voxel, count) in zip(names, recipes, strict=True):
         start = time.perf_counter()
         grid = generate(seed=seed, voxel=voxel)
@@ -83,41 +157,38 @@ def model() -> Model:
             )
             skipped += [*grid.skipped, *balls.skipped]
     total = sum(len(clouds[name].radii) for name in names[1:])
-    notes.append(f"field: {len(FIELD)} clouds of {total} balls together")
+    notes.append(f"field: {len(of.field)} clouds of {total} balls together")
     return Model(clouds, tuple(notes), tuple(skipped), seconds)
 
 
-def draw(model: Model, view: View) -> Picture:
+def draw(of: Cumulus, model: Model, view: View) -> Picture:
     """Light and draw the clouds, the farthest first."""
     look: Look = named(view.look or "cumulus")
     scattering = view.scattering or _best(view)
     solved = scattering == "multiple"
     if solved and view.look is None:
         look = dataclasses.replace(look, **SOLVED)
-    medium = view.medium or (SOLVED_MEDIUM if solved else Medium(SIGMA_T))
-    light = SOLVED_SUN if solved else SUN
+    medium = view.medium or (of.medium if solved else of.single_medium)
+    light = of.sun if solved else of.single_sun
     plan = dataclasses.replace(PLAN, double=view.tolerance < SINGLE_PRECISION)
     far = dataclasses.replace(look, **FIELD_BUFFERS)
+    here = {"scattering": scattering, "plan": plan}
     layers = [
         Layer(
-            placed(model.clouds[f"field {k}"], np.array([x, 0.0, z]), scale=scale),
+            standing(model.clouds[name], place),
             medium,
-            far,
-            Haze(HAZE, FIELD_AIR),
-            scattering=scattering,
-            plan=plan,
+            look if name == "cloud" else far,
+            Haze(HAZE, place.air),
+            **here,
         )
-        for k, (_, x, z, scale) in enumerate(FIELD)
+        for name, place in (
+            *((f"field {k}", place) for k, place in enumerate(of.field)),
+            ("cloud", of.hero),
+        )
     ]
-    hero = placed(model.clouds["cloud"], np.zeros(3), turn=TURN)
-    layers.append(
-        Layer(
-            hero, medium, look, Haze(HAZE, HERO_AIR), scattering=scattering, plan=plan
-        )
-    )
     return draw_layers(
         layers,
-        view.camera or camera(view),
+        view.camera or camera(view, of),
         (light,) if view.suns is None else view.suns,
         Sky(),
         tolerance=view.tolerance,
@@ -128,6 +199,12 @@ def draw(model: Model, view: View) -> Picture:
     )
 
 
+def standing(balls: Metaballs, place: Placed) -> Metaballs:
+    """Stand a cloud at its place."""
+    at = np.array([place.x, 0.0, place.z])
+    return placed(balls, at, turn=place.turn, scale=place.scale)
+
+
 def _best(view: View) -> Literal["single", "multiple"]:
     """Solve the light where the solution models what was asked for."""
     look, medium = named(view.look or "cumulus"), view.medium
@@ -136,22 +213,21 @@ def _best(view: View) -> Literal["single", "multiple"]:
     return "multiple" if grey and own else "single"
 
 
-def camera(view: View) -> Camera:
+def camera(view: View, of: Cumulus = OWN) -> Camera:
     """Look up at the cloud from below, the horizon just under the picture."""
-    return Camera(np.array(EYE), np.array(TARGET), width=view.width, height=view.height)
+    return Camera(of.eye, of.target, width=view.width, height=view.height)
 
 
-def eye(model: Model, view: View) -> Camera:
+def own_eye(model: Model, view: View, *, of: Cumulus) -> Camera:
     """Give the scene's own camera, which knows nothing of its clouds."""
-    return camera(view)
+    return camera(view, of)
 
 
-enter(
-    Scene(
-        "cumulus",
-        "a cumulus over a field of small clouds",
-        model,
-        draw,
-        Motion(eye, (SUN,)),
-    )
+def turning(of: Cumulus) -> Motion:
+    """Turn eye and sun."""
+    return Motion(partial(own_eye, of=of), (of.single_sun,))
+
+
+enter_kind(
+    Kind("cumulus", "a cumulus over a field of small clouds", OWN, draw, turning, model)
 )

@@ -26,9 +26,7 @@ from refcloud.compose import merged
 from refcloud.conventions import (
     WHOLE_SPHERE,
     Array,
-    Positive,
     Range,
-    Seed,
     Skipped,
     Vector,
 )
@@ -39,6 +37,7 @@ from refcloud.lighting.octave_march import SINGLE_PRECISION
 from refcloud.optics import Medium, Sun
 from refcloud.scene import Model, Motion, View
 from refcloud.scenes import cumulus
+from refcloud.scenes.cumulus import Placed
 from refcloud.scenes.demand import marched_alone
 from refcloud.sky import Sky, clear_sky
 from refcloud.transport import PLANS, ScatteredLight, scattered_light
@@ -52,35 +51,6 @@ FINEST, COARSEST = 0.22, 1.6  # scene units of the cloud's own
 KEPT_FROM = (
     0.8  # voxels of small pictures: a map of 2 MB takes longer to make than draw
 )
-
-
-@dataclass(frozen=True)
-class Placed:
-    """A cloud of the scene: which, where, how large, how turned, in how much air.
-
-    Attributes
-    ----------
-    seed
-        Which cloud.
-    x, z
-        Its place on the ground.
-    scale
-        Factor on its size.
-    turn
-        About y.
-    air
-        Distance over which its light falls to 1/e.
-    """
-
-    seed: Seed
-    x: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
-    z: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
-    scale: Annotated[float, Positive] = 1.0
-    turn: Annotated[float, Range(-7.0, 7.0, "radians")] = 0.0
-    air: Annotated[float, Positive] = cumulus.FIELD_AIR
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @dataclass(frozen=True)
@@ -116,15 +86,15 @@ class Hero:
 
 
 # The large cloud's seed and turn were chosen by eye among 16 and two.
-HERO = Placed(6, turn=math.radians(20.0), air=cumulus.HERO_AIR)
-FIELD = tuple(Placed(seed, x, z, scale) for seed, x, z, scale in cumulus.FIELD)
+HERO = dataclasses.replace(cumulus.OWN.hero, seed=6)
+FIELD = cumulus.OWN.field
 SUN = Sun(
     np.array([-0.62, 0.62, 0.42]),
     0.95 * WHOLE_SPHERE * np.array([1.0, 0.95, 0.86]),
 )
 OWN = Hero(
-    eye=np.array(cumulus.EYE),
-    target=np.array(cumulus.TARGET),
+    eye=cumulus.OWN.eye,
+    target=cumulus.OWN.target,
     hero=HERO,
     field=FIELD,
     sun=Sun(SUN.direction, 0.68 * SUN.irradiance),

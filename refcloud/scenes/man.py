@@ -12,27 +12,26 @@ extensions change.
 
 from __future__ import annotations
 
-import dataclasses
-import time
-from functools import partial
-
 import numpy as np
 
-from refcloud.camera import AnyCamera, Camera
 from refcloud.cloudmap import VoxelGrid, generate
-from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import WHOLE_SPHERE
-from refcloud.image import Picture
+from refcloud.declared import Cloud, Declaration, Placement, scene_from
 from refcloud.lighting import named
-from refcloud.metaballs import approximate, placed, prune, voxel_balls
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
-from refcloud.render import framed
-from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.scene import enter
 from refcloud.scenes import cumulus
 from refcloud.sky import Sky
 
 # Figure 4: Z = 4, s = 0.5, t = 0.1, d = 1; this seed gives 11,011 voxels.
 SEED = 2
+MAP = {
+    "shape": "ellipsoid",
+    "seed": SEED,
+    "octaves": 4,
+    "persistence": 0.5,
+    "threshold": 0.1,
+}
 OVERLAP = 2.0  # u of figures 8 to 10
 CLOUD_MEDIUM = Medium(1.0, ALBEDO_MAN2003)  # sigma_t is not used: every ball has tau 8
 FRONT = Sun(np.array([-0.62, 0.62, 0.42]), np.full(3, 1.6 * WHOLE_SPHERE))
@@ -51,99 +50,47 @@ FORWARD = Medium(1.0, ALBEDO_MAN2003, g=0.5, phase="hg")
 
 def cloud_map() -> VoxelGrid:
     """Generate the cloud of figure 4."""
-    return generate("ellipsoid", seed=SEED, octaves=4, persistence=0.5, threshold=0.1)
+    return generate(**MAP)
 
 
-def voxel_model() -> Model:
-    """Take one ball per occupied voxel."""
-    start = time.perf_counter()
-    grid = cloud_map()
-    balls = voxel_balls(grid)
-    seconds = {"generate": time.perf_counter() - start}
-    note = f"cloud: {len(balls.radii)} voxels"
-    return Model({"cloud": balls}, (note,), grid.skipped, seconds)
+def fitted(count: int) -> Cloud:
+    """Give the cloud of figures 8 to 10: phases 1 and 2, every density 1."""
+    balls = {"count": count, "method": "man", "overlap": OVERLAP, "seed": SEED}
+    return Cloud(MAP, balls, Placement(even=True))
 
 
-def cluster_model(count: int) -> Model:
-    """Run phases 1 and 2; every ball keeps density 1, as in the paper's figures."""
-    start = time.perf_counter()
-    grid = cloud_map()
-    middle = time.perf_counter()
-    fitted = approximate(grid, count=count, method="man", overlap=OVERLAP, seed=SEED)
-    balls = dataclasses.replace(fitted, densities=np.ones(len(fitted.radii)))
-    seconds = {
-        "generate": middle - start,
-        "approximate": time.perf_counter() - middle,
-    }
-    note = f"cloud: {len(balls.radii)} balls, densities not fitted"
-    return Model({"cloud": balls}, (note,), grid.skipped, seconds)
+def large() -> Cloud:
+    """Give the large cloud of the scene ``cumulus``."""
+    hero = cumulus.OWN.hero
+    balls = {"count": cumulus.OWN.count, "seed": hero.seed}
+    return Cloud({"seed": hero.seed}, balls, Placement(turn=hero.turn, prune=True))
 
 
-def shading_model() -> Model:
-    """Take the balls of the scene ``cumulus``."""
-    start = time.perf_counter()
-    grid = generate(seed=cumulus.SEED)
-    middle = time.perf_counter()
-    fitted = approximate(grid, count=cumulus.COUNT, seed=cumulus.SEED)
-    balls = placed(prune(fitted), np.zeros(3), turn=cumulus.TURN)
-    seconds = {
-        "generate": middle - start,
-        "approximate": time.perf_counter() - middle,
-    }
-    note = f"cloud: {len(balls.radii)} balls"
-    return Model({"cloud": balls}, (note,), grid.skipped, seconds)
+def in_front(number: int, title: str, cloud: Cloud) -> Declaration:
+    """Declare a cloud that is framed by itself, the sun in front."""
+    name, title = f"man-{number:02}", f"figure {number}: {title}"
+    lit = (FRONT,), CLOUD_MEDIUM, named("man")
+    return Declaration(name, title, (cloud,), None, *lit)
 
 
-def draw_front(model: Model, view: View) -> Picture:
-    """Draw a cloud framed by itself, the sun in front."""
-    camera = view.camera or in_front(model, view)
-    return _draw(model, view, camera, FRONT, CLOUD_MEDIUM, Sky())
+def against(number: int, title: str, medium: Medium) -> Declaration:
+    """Declare the large cloud against the sun."""
+    name, title = f"man-{number:02}", f"figure {number}: {title} scattering"
+    camera = {"eye": cumulus.OWN.eye, "target": cumulus.OWN.target}
+    lit = (BEHIND,), medium, named("man"), EVENING
+    return Declaration(name, title, (large(),), camera, *lit)
 
 
-def in_front(model: Model, view: View) -> Camera:
-    """Frame the cloud by itself."""
-    return framed(model.clouds["cloud"], view.width, view.height)
-
-
-def draw_behind(model: Model, view: View, medium: Medium) -> Picture:
-    """Draw the large cloud of ``cumulus`` against the sun."""
-    camera = view.camera or cumulus.camera(view)
-    return _draw(model, view, camera, BEHIND, medium, EVENING)
-
-
-def _draw(
-    model: Model, view: View, camera: AnyCamera, sun: Sun, medium: Medium, sky: Sky
-) -> Picture:
-    layer = Layer(
-        model.clouds["cloud"],
-        view.medium or medium,
-        named(view.look or "man"),
-        scattering=view.scattering or "single",
+DECLARED = {
+    declared.name: declared
+    for declared in (
+        in_front(4, "the cloud map", Cloud(MAP)),
+        in_front(8, "the map as 1000 balls", fitted(1000)),
+        in_front(9, "the map as 100 balls", fitted(100)),
+        in_front(10, "the map as 30 balls", fitted(30)),
+        against(13, "isotropic", ISOTROPIC),
+        against(14, "anisotropic", FORWARD),
     )
-    return draw_layers(
-        [layer],
-        camera,
-        (sun,) if view.suns is None else view.suns,
-        sky,
-        tolerance=view.tolerance,
-        seed=view.seed,
-        observe=view.observe,
-        backend=view.backend,
-        kept=view.kept,
-    )
-
-
-AROUND_FRONT = Motion(in_front, (FRONT,))
-AROUND_BEHIND = Motion(cumulus.eye, (BEHIND,))
-enter(Scene("man-04", "figure 4: the cloud map", voxel_model, draw_front, AROUND_FRONT))
-for figure, count in ((8, 1000), (9, 100), (10, 30)):
-    title = f"figure {figure}: the map as {count} balls"
-    model = partial(cluster_model, count)
-    enter(Scene(f"man-{figure:02}", title, model, draw_front, AROUND_FRONT))
-for figure, how, medium in (
-    (13, "isotropic", ISOTROPIC),
-    (14, "anisotropic", FORWARD),
-):
-    title = f"figure {figure}: {how} scattering"
-    against = partial(draw_behind, medium=medium)
-    enter(Scene(f"man-{figure}", title, shading_model, against, AROUND_BEHIND))
+}
+for declared in DECLARED.values():
+    enter(scene_from(declared))

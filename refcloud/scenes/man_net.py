@@ -48,6 +48,7 @@ from refcloud.scenes.demand_plane import flat_alone
 NEURONS = 6
 CENTRES = 1000
 OVERLAP = man.OVERLAP
+RULES = {"method": "man", "overlap": OVERLAP}
 TURNED, LIFTED, CLOSER = 0.55, 0.32, 0.72  # of figure 7's eye: radians, shares
 
 
@@ -61,7 +62,7 @@ def network(view: View) -> Picture:
     flat_alone(view)
     canvas = blank(view.width, view.height)
     grid = small_cloud()
-    net = approximate(grid, count=NEURONS, method="man", overlap=OVERLAP)
+    net = approximate(grid, count=NEURONS, **RULES)
     point, true = asked_voxel(grid, net)
     away = np.sqrt(np.square(net.centers - point).sum(axis=1))
     says = profile(np.square(away / net.radii), net.kernel)

@@ -64,9 +64,9 @@ class Multiple:
 
 
 OWN = Multiple(
-    seed=cumulus.SEED,
-    eye=np.array(cumulus.EYE),
-    target=np.array(cumulus.TARGET),
+    seed=cumulus.OWN.hero.seed,
+    eye=cumulus.OWN.eye,
+    target=cumulus.OWN.target,
     # The sun of the other pictures, so strong that the brightest parts are white.
     sun=Sun(
         np.array([-0.62, 0.62, 0.42]), 0.5 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89])

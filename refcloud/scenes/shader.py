@@ -133,7 +133,9 @@ def solid_motion(of: SolidSky) -> Motion:
     """Turn the eye in a sphere whose noise repeats."""
     again = of.period / of.cells
     period = float(of.period)
-    return Motion(upward_eye, turns=IN_PLACE, period=period, repeats=(again,) * 3)
+    return Motion(
+        upward_eye, turns=IN_PLACE, period=period, repeats=(again, again, again)
+    )
 
 
 def plane_motion(of: PlaneSky) -> Motion:

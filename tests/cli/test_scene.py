@@ -15,7 +15,7 @@ def test_a_written_scene_is_rendered_and_changed(run, here: Path) -> None:
     text = Path("man-10.toml").read_text("utf-8")
     Path("few.toml").write_text(text.replace("count = 30", "count = 5"), "utf-8")
     ended = run(*f"render few.toml {SIZE}".split())
-    assert "cloud 0: 5 balls\n" in ended.out
+    assert "cloud: 5 balls, densities not fitted\n" in ended.out
     assert ended.out.splitlines()[-1] == "few.png"
     moved = run(*f"animate few.toml --frames 2 --turn-eye 360 {SIZE} -o f".split())
     assert "the way closes" in moved.out
@@ -24,7 +24,7 @@ def test_a_written_scene_is_rendered_and_changed(run, here: Path) -> None:
 def test_what_does_not_fit_is_refused_in_one_line(run, here: Path) -> None:
     Path("bad.toml").write_text("[cloud", "utf-8")
     for line, message in (
-        ("scene demand", "NAME: expected one of cumulus, man-04"),
+        ("scene demanded", "NAME: expected one of cumulus, demand, "),
         ("scene man-10 -o a.txt", "--output: expected a name ending in .toml"),
         ("render none.toml", "none.toml: expected a scene (.toml), got no such file"),
         ("render bad.toml", "bad.toml: expected a TOML file"),

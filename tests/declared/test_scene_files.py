@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import typing
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +15,11 @@ from strategies import values_for
 
 import refcloud as rc
 from refcloud.declared import (
+    KINDS,
     Cloud,
     Declaration,
     Placement,
+    declared_kind,
     load_scene,
     save_scene,
     scene_from,
@@ -25,6 +28,9 @@ from refcloud.declared.reading import checked_table
 from refcloud.scenes import SCENES, View
 from refcloud.scenes.as_files import FILES
 
+HEAD = 'format = "refcloud.scene"\nversion = 1\n'
+KIND = HEAD + "kind = "
+QUICK = ("man-10", "demand-lit", "simple-sky", "shader-c", "demand-worley")
 SMALL = Cloud(
     {"diameters": np.array([20.0, 11.0, 11.0]), "cell": 5.0, "relief": 2.0},
     {"count": 12, "seed": 3},
@@ -53,7 +59,7 @@ def test_a_file_gives_its_declaration_again(name: str, tmp_path: Path) -> None:
     assert scene_from(load_scene(path)).title == SCENES[name].title
 
 
-@pytest.mark.parametrize("name", ["man-10"])
+@pytest.mark.parametrize("name", QUICK)
 def test_a_file_draws_the_scene_to_the_bit(name: str, tmp_path: Path) -> None:
     scene = scene_from(load_scene(save_scene(tmp_path / "a.toml", FILES[name])))
     view = View(32, 24)
@@ -62,7 +68,7 @@ def test_a_file_draws_the_scene_to_the_bit(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [n for n in FILES if n != "man-10"])
+@pytest.mark.parametrize("name", [n for n in FILES if n not in QUICK])
 def test_every_file_draws_its_scene_to_the_bit(name: str, tmp_path: Path) -> None:
     test_a_file_draws_the_scene_to_the_bit(name, tmp_path)
 
@@ -71,8 +77,6 @@ def test_every_file_draws_its_scene_to_the_bit(name: str, tmp_path: Path) -> Non
 @given(data=st.data())
 def test_every_number_comes_back_to_the_last_bit(data, tmp_path_factory) -> None:
     def drawn(thing: type, *names: str) -> dict[str, Any]:
-        import typing
-
         hints = typing.get_type_hints(thing, include_extras=True)
         return {name: data.draw(values_for(hints[name])) for name in names}
 
@@ -94,6 +98,56 @@ def test_every_number_comes_back_to_the_last_bit(data, tmp_path_factory) -> None
     assert same(load_scene(path), declared)
 
 
+def test_every_named_scene_has_a_file() -> None:
+    assert {*FILES} == {*SCENES}
+
+
+@settings(max_examples=30)
+@given(data=st.data())
+def test_parameters_of_kinds_come_back_to_the_last_bit(data, tmp_path_factory) -> None:
+    def drawn(thing: Any) -> Any:
+        hints = typing.get_type_hints(type(thing), include_extras=True)
+        changed = {}
+        for field in dataclasses.fields(thing):
+            value = getattr(thing, field.name)
+            if dataclasses.is_dataclass(value):
+                changed[field.name] = drawn(value)
+            elif type(value) in (int, float, bool, str):
+                changed[field.name] = data.draw(values_for(hints[field.name]))
+        try:
+            return dataclasses.replace(thing, **changed)
+        except ValueError:  # two of its numbers do not go together
+            return thing
+
+    kind = declared_kind(data.draw(st.sampled_from(sorted(KINDS))))
+    changed = dataclasses.replace(kind, name="mine", of=drawn(kind.of))
+    path = save_scene(tmp_path_factory.mktemp("a") / "a.toml", changed)
+    assert same(load_scene(path), changed)
+
+
+def test_what_a_kind_s_file_leaves_out_its_scene_has(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(
+        HEAD + 'kind = "demand-lit"\n[parameters]\nfov_y = 0.4\n'
+        "[parameters.cloud]\nseed = 5\n[parameters.medium]\nsigma_t = 30\n"
+    )
+    mine, own = load_scene(path).of, KINDS["demand-lit"].own
+    assert (mine.fov_y, mine.cloud.seed, mine.medium.sigma_t) == (0.4, 5, 30.0)
+    assert (mine.cloud.cell, mine.medium.g) == (own.cloud.cell, own.medium.g)
+    assert same(mine.sun, own.sun)
+    # And the picture shows it.
+    scene = scene_from(load_scene(path))
+    picture = rc.render(scene, width=24, height=18).linear
+    assert np.abs(picture - rc.render("demand-lit", width=24, height=18).linear).max()
+
+
+def test_a_field_of_clouds_is_rows_of_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(HEAD + 'kind = "cumulus"\n[[parameters.field]]\nseed = 3\nx = 9\n')
+    (only,) = load_scene(path).of.field
+    assert (only.seed, only.x, only.scale) == (3, 9.0, 1.0)
+
+
 def test_a_declared_scene_is_drawn_and_animated(tmp_path: Path) -> None:
     scene = scene_from(Declaration("mine", "", (SMALL,)))
     picture = rc.render(scene, width=24, height=18)
@@ -112,7 +166,6 @@ def test_a_declared_scene_is_drawn_and_animated(tmp_path: Path) -> None:
     np.testing.assert_array_equal(first.linear, still.linear)
 
 
-HEAD = 'format = "refcloud.scene"\nversion = 1\n'
 BAD = {
     "x = ": "expected a TOML file, got Invalid",
     'format = "other"\nversion = 1': r'expected format = "refcloud.scene", version = 1',
@@ -133,6 +186,16 @@ BAD = {
     HEAD + "[[cloud]]\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]": "another place",
     HEAD + "sky = 3\n[[cloud]]": r"sky: expected a table \[sky\], got 3",
     HEAD + "name = 3\n[[cloud]]": "name: expected a text, got 3",
+    HEAD + "scattering = 'twice'\n[[cloud]]": "scattering: expected one of 'single'",
+    KIND + '"demand"\n[[cloud]]': "cloud: expected one of kind, name, title, par",
+    HEAD + 'kind = "demand-lot"': "kind: expected one of .*, got 'demand-lot'",
+    KIND + '"demand-lit"\n[parameters]\nfov = 1': "parameters.fov: .*mean fov_y?",
+    KIND + '"demand-lit"\n[parameters]\nfov_y = 9': r"parameters.fov_y: .*radians",
+    KIND + '"demand-lit"\nparameters = 3': r"expected a table \[parameters\], got 3",
+    KIND + '"demand-lit"\n[parameters.cloud]\nedge = [2,0,0]': "parameters.cloud.edge:",
+    KIND + '"demand-lit"\n[parameters.sun]\ndirection = [0,0,0]': "is not zero",
+    KIND + '"demand"\n[[parameters.field]]\nscale = 0': r"field\[0\].scale: expected",
+    KIND + '"demand"\n[parameters]\nfield = 3': r"expected tables \[\[parameters.field",
 }
 
 
