@@ -44,6 +44,7 @@ def scene_from(declared: Declaration | Changed) -> Scene:
         partial(model, declared),
         partial(draw, declared),
         Motion(partial(eye, declared), declared.suns or (SUN,)),
+        ("scattering", "seed"),
     )
 
 
