@@ -14,6 +14,7 @@ import numpy as np
 from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import complaint
 from refcloud.conventions import Array, Backend, Observer, Skipped
+from refcloud.extremes import refuse_bright
 from refcloud.image import Picture
 from refcloud.lighting import (
     Haze,
@@ -250,4 +251,5 @@ def painted(background: Any, camera: AnyCamera, suns: tuple[Sun, ...]) -> Array 
     if background.shape not in (shape, (3,)):
         expected = f"shape {shape}, that of the picture"
         raise ValueError(complaint("background", expected, f"shape {background.shape}"))
+    refuse_bright("background", background)
     return np.broadcast_to(background, shape)

@@ -25,6 +25,7 @@ from refcloud.conventions import (
 )
 from refcloud.image import Picture
 from refcloud.lighting import Haze, LitMetaballs, Look, named
+from refcloud.lighting.ends import refuse_extreme
 from refcloud.lighting.look import LookName
 from refcloud.lighting.solved import brought_by
 from refcloud.march import Mixing
@@ -204,6 +205,7 @@ def render(
     scattering = "single" if scattering is None else scattering
     if not isinstance(scattering, str):
         suns, medium = brought_by(scattering, suns, medium)
+    refuse_extreme(cloud, suns or (), medium, camera)
     drawn = as_drawn(cloud, method)
     if drawn is not cloud and isinstance(drawn, Metaballs):
         notes.append(f"drawn as one ball per occupied voxel: {len(drawn)} balls")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,7 +23,20 @@ from refcloud import (
 )
 from refcloud.bench import stability
 from refcloud.figure import find_figure
-from refcloud.raster import framebuffer, splat
+from refcloud.noise import uniform
+from refcloud.raster import (
+    Blending,
+    State,
+    Texture,
+    Textured,
+    draw_lines,
+    draw_triangles,
+    framebuffer,
+    plane_mesh,
+    sphere_mesh,
+    splat,
+)
+from refcloud.raster.meshes import separate
 from refcloud.scenes import SCENES, Model, View, man_net, man_passes
 
 FIXTURES = Path(__file__).parent / "fixtures"
@@ -50,6 +64,39 @@ def blend_fan() -> Picture:
             name=("chord", "profile")[step % 2],
             law=("beer", "linear")[step // 2 % 2],
         )
+    return Picture(buffer.pixels[..., :3])
+
+
+def textured_triangles() -> Picture:
+    """Draw a floor to the horizon, two balls that sink in, lines and a half-clear wall.
+
+    The floor is cut by the near plane; everything is tested for depth.
+    """
+    view = Camera([0.0, 0.9, 3.2], [0.0, 0.2, 0.0], fov_y=0.9, width=128, height=96)
+    j, i, c = np.ogrid[0:16, 0:16, 0:4]
+    blocks = 0.15 + 0.7 * uniform(j // 2, i // 2, c, seed=3) + 0.15 * ((i + j) % 2)
+    blocks[..., 3] = 1.0
+    ground = Texture(0.1 + 0.5 * np.array([[[0.0], [1.0]], [[1.0], [0.0]]]) * [1, 1, 1])
+    floor = plane_mesh(8, 8, width=60.0, depth=60.0)
+    floor = replace(floor, attributes=12.0 * floor.attributes)
+    ball = sphere_mesh(24, 18)
+    x, y, z = ball.points.T
+    swell = 0.7 + 0.2 * np.sin(7.0 * x) * np.sin(5.0 * y + 1.0) * np.cos(6.0 * z)
+    lumpy = replace(ball, points=swell[:, None] * ball.points + [0.75, 0.3, -0.4])
+    smooth = replace(ball, points=0.6 * ball.points + [-0.8, 0.35, 0.3])
+    wall = np.array([[[-2, 0, 0.9], [0.5, 0, 0.9], [0.5, 1, 0.9]]], float)
+    buffer = framebuffer(128, 96, color=[0.25, 0.4, 0.7, 1.0], depth=1.0)
+    nearest, depths = State(depth_func="LESS"), {"near": 0.3, "far": 50.0}
+    for mesh, texture in ((floor, ground), (smooth, Texture(blocks))):
+        draw_triangles(buffer, view, mesh, Textured(texture), state=nearest, **depths)
+    levels = Texture(blocks, "MIRRORED_REPEAT", "NEAREST", "LINEAR_MIPMAP_LINEAR")
+    draw_triangles(buffer, view, lumpy, Textured(levels), state=nearest, **depths)
+    axes = [[[-3, 0.3, 0], [3, 0.3, 0]], [[0.1, -1, 0], [0.1, 2, 0]]]
+    draw_lines(buffer, view, axes, color=[1, 0.9, 0, 1], depth_func="LESS", **depths)
+    over = Blending("SRC_ALPHA", "ONE_MINUS_SRC_ALPHA")
+    through = State(blending=over, depth_func="LESS", depth_mask=False)
+    half = [0.9, 0.1, 0.1, 0.5]
+    draw_triangles(buffer, view, separate(wall), half, state=through, **depths)
     return Picture(buffer.pixels[..., :3])
 
 
@@ -144,4 +191,5 @@ GOLDEN: dict[str, Callable[[], Picture]] = {
     },
     "simple-quad": partial(unfitted, "simple-quad", SMALL_VIEW),
     "simple-sky": partial(unfitted, "simple-sky", SMALL_VIEW),
+    "textured-triangles": textured_triangles,
 }

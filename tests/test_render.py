@@ -345,7 +345,7 @@ def test_voxels_too_coarse_for_their_depth_are_told() -> None:
         ),
         (
             lambda: render("demand-sky", scattering="multiple"),
-            "scattering: expected none beside a picture of the plane",
+            "scattering: expected none beside demand-sky, whose",
         ),
     ],
 )
@@ -370,3 +370,43 @@ def test_a_seed_that_changes_nothing_is_said_to(name: str) -> None:
     assert said <= np.array_equal(one.linear, other.linear)
     assert said == (name != "demand-lit")
     assert not any(note.startswith("seed") for note in one.notes)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: render(Metaballs([[1e60, 0, 0]], [1], [1])), "cloud: expected places"),
+        (lambda: render(Metaballs([[0, 0, 0]], [1e-60], [1])), "cloud: expected sizes"),
+        (
+            lambda: render(Metaballs([[0, 0, 0]], [1e45], [1e200])),
+            "cloud: expected an optical depth",
+        ),
+        (
+            lambda: render(BALLS, **(HOW | {"suns": Sun([0, 1, 0], [1e250, 0, 0])})),
+            "suns: expected light of at most 1e",
+        ),
+        (
+            lambda: render(BALLS, **HOW, background=[1e250, 0, 0]),
+            "background: expected light",
+        ),
+        (
+            lambda: render(BALLS, **(HOW | {"medium": Medium(1e300)}), width=2),
+            "sigma_t: expected an optical depth",
+        ),
+        (
+            lambda: render(BALLS, camera=Camera([1e60, 0, 0], [0, 0, 0])),
+            "camera: expected places",
+        ),
+        (lambda: render(VoxelGrid(np.ones((1, 1, 1)), [0] * 3, [1e-60] * 3)), "cloud:"),
+        (
+            lambda: integrate(
+                GRID, [0, 0, 1e60], [[0, 0, 1.0]], suns=SUNS, medium=MEDIUM
+            ),
+            "origins: expected places",
+        ),
+        (lambda: Haze([1e250, 0, 0], 1.0), "color: expected light"),
+    ],
+)
+def test_what_leaves_no_room_for_products_is_refused(call, message) -> None:
+    with pytest.raises(ValueError, match=rf"^{message}[^\n]*$"):
+        call()

@@ -16,7 +16,7 @@ LONGEST_FILE = 300
 FLOORS = (
     ("conventions", "references"),
     ("refusal",),
-    ("checking",),
+    ("checking", "extremes"),
     ("files", "parameters"),
     ("noise", "optics", "camera", "image"),
     ("cloudmap", "drawing"),

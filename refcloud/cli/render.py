@@ -25,6 +25,7 @@ from refcloud.cli.setting import (
     size_for,
     suns_for,
 )
+from refcloud.cli.studio_file import is_studio_file, studio_picture
 from refcloud.cloudmap import VoxelGrid
 from refcloud.image import Picture
 from refcloud.march import Mixing
@@ -94,15 +95,19 @@ def run(words: Sequence[str]) -> int:
     name = Path(what).stem
     chosen = chosen_of(given)
     path = ready(given.named(f"{name}.png"), SUFFIXES)
-    stages = Stages()
-    cloud, parts, notes = prepared(given, chosen, stages)
-    with stages.stage("render"):
-        picture = render(cloud, **parts, **chosen, observe=stages.watch)
+    stages, notes, saving = Stages(), [], given.of(SAVING)
+    if is_studio_file(what):
+        with stages.stage("render"):
+            picture, saving = studio_picture(given, what)
+    else:
+        cloud, parts, notes = prepared(given, chosen, stages)
+        with stages.stage("render"):
+            picture = render(cloud, **parts, **chosen, observe=stages.watch)
     # What the picture knows of its own stages says more than their sum.
     stages.seconds.pop("render")
     stages.seconds.update(picture.seconds)
     with stages.stage("save"):
-        picture.save(path, **given.of(SAVING))
+        picture.save(path, **saving)
     report([*notes, *picture.notes], picture.skipped, stages.line(), path)
     return 0
 

@@ -10,6 +10,7 @@ import numpy as np
 from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import check_fields, checked
 from refcloud.conventions import WHOLE_SPHERE, Array, Colour, Positive
+from refcloud.extremes import refuse_bright, refuse_small
 from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.lightview import handed_on
 from refcloud.lighting.lit import LitMetaballs
@@ -35,6 +36,8 @@ class Haze:
 
     def __post_init__(self) -> None:
         check_fields(self)
+        refuse_bright("color", self.color)
+        refuse_small("length", self.length)
 
 
 @checked

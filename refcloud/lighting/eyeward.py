@@ -15,6 +15,7 @@ from refcloud.checking import checked
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
 from refcloud.lighting.certified_tiles import certified_tiles
 from refcloud.lighting.colours import Haze
+from refcloud.lighting.ends import refuse_extreme
 from refcloud.lighting.flat_tiles import flat_balls
 from refcloud.lighting.hidden import without_faint
 from refcloud.lighting.lit import LitMetaballs
@@ -75,6 +76,7 @@ def eyeward(
     Source: paper M, eq 28 and 29, L10, L11; E04, E25, E26.
     """
     watch = observe or (lambda name, value: None)
+    refuse_extreme(lit.balls, lit.suns, lit.medium, camera)
     size = (camera.height, camera.width)
     if background is not None and background.shape != (*size, 3):
         raise ValueError(

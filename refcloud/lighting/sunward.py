@@ -13,6 +13,7 @@ from refcloud.checking import checked
 from refcloud.conventions import Observer, Skipped, Tolerance
 from refcloud.lighting.coarser import Sized, may_shrink, sized_share
 from refcloud.lighting.colours import gain_of
+from refcloud.lighting.ends import refuse_extreme
 from refcloud.lighting.lightview import light_view
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import Look, LookName, named
@@ -72,6 +73,7 @@ def sunward(
 
     Source: paper M, eq 26 to 28, L04 to L09, L12, L13; E22 to E27.
     """
+    refuse_extreme(balls, suns, medium)
     return lit_by(balls, suns, medium, named(look), tolerance, earlier, observe)
 
 

@@ -8,8 +8,9 @@ from typing import NoReturn
 import numpy as np
 
 from refcloud.camera import AnyCamera
-from refcloud.cloudmap import VoxelGrid
+from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Observer, Skipped
+from refcloud.extremes import refuse_bright, refuse_far, refuse_small
 from refcloud.march.balls import exact_balls
 from refcloud.march.cells import lattice
 from refcloud.march.certified import to_tolerance
@@ -88,6 +89,12 @@ def marched(
     -------
     What was found.
     """
+    refuse_far("origins", origins)
+    for sun in suns:
+        refuse_bright("suns", sun.irradiance)
+    for name, light in (("background", background), ("ambient", ambient)):
+        if light is not None:
+            refuse_bright(name, light)
     if isinstance(cloud, Metaballs):
         if volumes:
             expected = "none beside metaballs, whose light has a closed form"
@@ -96,6 +103,8 @@ def marched(
             cloud, origins, directions, suns, medium, ambient, mixing, background
         )
     refuse_unbounded(cloud, medium)
+    refuse_far("cloud", [cloud.lower, cloud.upper])
+    refuse_small("cloud", cell_size(cloud))
     _refuse_coarse(cloud, medium, origins)
     suns, dark = without_dark(suns, medium)
     task = Task(
@@ -139,6 +148,9 @@ def _balls_marched(
         depth = float(np.max(medium.sigma_t) * np.float64(whole))
     if not depth < BOUNDED:
         _refuse_depth()
+    refuse_far("cloud", balls.centers)
+    refuse_far("cloud", balls.radii)
+    refuse_small("cloud", balls.radii)
     lit = sources(suns, medium, directions=directions)
     found = exact_balls(balls, origins, directions, suns, lit, medium, mixing)
     light = np.zeros(3) if ambient is None else ambient

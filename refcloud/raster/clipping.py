@@ -43,7 +43,7 @@ def clip(
     code = np.zeros(corners.shape[1], np.uint8)
     for number, plane in enumerate(planes):
         code |= (_inside(corners, plane) < 0.0).view(np.uint8) << np.uint8(number)
-    first, second, third = code[faces]
+    first, second, third = code.take(faces)
     touched = (first | second | third) > 0
     if not touched.any():
         return corners, faces, np.arange(faces.shape[1])
@@ -52,7 +52,7 @@ def clip(
     left, faces = faces[:, whole], faces[:, source]
     for plane in planes:
         inside = _inside(corners, plane)
-        out = (inside < 0.0)[faces]  # (3, T)
+        out = (inside < 0.0).take(faces)  # (3, T)
         if not out.any():
             continue
         count = out.sum(axis=0)

@@ -212,7 +212,8 @@ def at_level(
             spread = np.repeat(x.astype(kind, copy=False), channels)
             shares.append(spread.reshape(-1, channels))
         whole *= stride
-        place = whole + place
+        whole += place
+        place = whole
     index = np.asarray(place).astype(np.intp)
     # 2. Mix the corners, first along s, then along t, then along r.
     if filter == "NEAREST":

@@ -117,7 +117,7 @@ def write(
     where
         Their places: slices, or lists in which no pixel comes twice.
     source
-        Colours, shape (h, w, 4) or (n, 4).
+        Colours, shape (h, w, 4) or (n, 4), float64 or float32.
     depths
         Shape (h, w) or (n,); None where the state tests none.
     state
@@ -136,8 +136,10 @@ def write(
     colors = source
     if state.blending is not None:
         how = store.format, store.arithmetic
+        source = source.astype(np.float64, copy=False)
         colors = blended_as(source, store.pixels[where], state.blending, *how)
     elif store.format != "RGBA64F":
+        source = source.astype(np.float64, copy=False)
         colors = stored(source, store.format, arithmetic=store.arithmetic)
 
     # 4. Write, channel by channel.

@@ -69,7 +69,7 @@ class Textured:
         check_fields(self)
 
     def __call__(self, fragments: Fragments) -> Array:
-        """Give RGBA, shape (n, 4)."""
+        """Give RGBA, shape (n, 4), in float32 where the tolerance allows that."""
         texture = self.texture
         scale = max(texture.largest * float(np.abs(self.color).max()), 1.0)
         kind = "f4" if fragments.tolerance >= MIXED_IN_FLOAT32 * scale else "f8"
@@ -80,6 +80,8 @@ class Textured:
             levels = level_of_detail(texture, *ways)
         coords = transformed(texture, fragments.values[part])
         texels = looked_up(texture, coords, levels, kind)
+        if texels.shape[1] == CHANNELS and (self.color == 1.0).all():
+            return texels
         color = np.empty((CHANNELS, coords.shape[1]))
         for channel, share in enumerate(self.color):
             there = channel < texels.shape[1]
@@ -234,7 +236,7 @@ def covered(
 
     # 2. Into the window, on whole sub-pixels.
     place = snapped(camera, corners[:3].T, near)
-    x, y = place[faces, 0], place[faces, 1]
+    x, y = place[:, 0].take(faces), place[:, 1].take(faces)
 
     # 3. Which side is seen: on the screen, whose y runs down, fronts run clockwise
     #    backward. Corners are then taken clockwise. What misses the box is left out.
@@ -245,7 +247,7 @@ def covered(
         kept &= {"FRONT": ~front, "BACK": front}.get(cull, False)
     faces, source, front = faces[:, kept], source[kept], front[kept]
     faces = np.where(front, faces[[0, 2, 1]], faces)
-    x, y = place[faces, 0], place[faces, 1]
+    x, y = place[:, 0].take(faces), place[:, 1].take(faces)
 
     # 4. What is linear on the screen, and the spans of pixels it is wanted at.
     pinhole = isinstance(camera, Camera)
@@ -254,7 +256,7 @@ def covered(
     if pinhole:
         values[0] = 1.0
         values /= away
-    linear = planes_through(x, y, values[:, faces])
+    linear = planes_through(x, y, values.take(faces, axis=1))
     view = View(pinhole, near, far)
     for spans in row_spans(x, y, *box):
         alone, others = spans.parted()

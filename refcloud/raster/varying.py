@@ -118,19 +118,19 @@ class Run:
         """Give the planes in the middle of column 0 of each span's row, (1 + K, R)."""
         planes, piece = self.planes, self.spans.triangle
         x, y = (
-            (HALF - origin[piece]).astype(np.float64) / SUBPIXEL
+            (HALF - origin.take(piece)).astype(np.float64) / SUBPIXEL
             for origin in planes.origin
         )
         y += self.spans.row
         start = self.step * x
-        start += planes.along_y[:, piece] * y
-        start += planes.value[:, piece]
+        start += planes.along_y.take(piece, axis=1) * y
+        start += planes.value.take(piece, axis=1)
         return start
 
     @functools.cached_property
     def step(self) -> Array:
         """Give their change from column to column, shape (1 + K, R)."""
-        return self.planes.along_x[:, self.spans.triangle]
+        return self.planes.along_x.take(self.spans.triangle, axis=1)
 
     def each(self, of_span: NDArray[Any]) -> Any:
         """Give the spans' numbers, shape (..., R), for each pixel, shape (..., n)."""
@@ -218,9 +218,11 @@ class Fragments:
     @functools.cached_property
     def values(self) -> Array:
         """Give the attributes, perspective-correct, shape (K, n)."""
-        found = np.stack([self._linear(k) for k in range(1, len(self.run.start))])
-        if self.run.view.pinhole:
-            found *= self.away
+        found = np.empty((len(self.run.start) - 1, len(self.column)))
+        for k, row in enumerate(found, start=1):
+            row[:] = self._linear(k)
+            if self.run.view.pinhole:
+                row *= self.away
         return found
 
     @property

@@ -18,7 +18,7 @@ from refcloud.optics import Medium, Sun
 from refcloud.raster import draw_box
 from refcloud.raster.walls import LIGHT_BLUE
 from refcloud.scene import View
-from refcloud.scenes.demand import LOWER, NO_WALL, UPPER, over_opaque
+from refcloud.scenes.demand import NO_WALL, OWN, over_opaque
 from refcloud.scenes.demand_plane import mended
 
 Frame = Literal["walls", "lines", "none"]
@@ -37,10 +37,10 @@ class Box:
         Along x, y and z, shape (3,), scene units, above 0.
     """
 
-    place: Vector = field(default_factory=lambda: 0.5 * (LOWER + UPPER))
+    place: Vector = field(default_factory=lambda: 0.5 * (OWN.lower + OWN.upper))
     lengths: Annotated[
         Array, Shape(3), Range(0.0, 1e6, "scene units", open_lower=True)
-    ] = field(default_factory=lambda: UPPER - LOWER)
+    ] = field(default_factory=lambda: OWN.upper - OWN.lower)
 
     def __post_init__(self) -> None:
         check_fields(self)

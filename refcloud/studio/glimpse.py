@@ -106,12 +106,12 @@ def glimpse_of_multiple(
     The picture.
     """
     grid = _coarse_cumulus()
-    sigma_t = multiple.THICKNESS / grid_through_the_middle(grid)
+    sigma_t = multiple.OWN.thickness / grid_through_the_middle(grid)
     return glimpse(
         grid,
         camera=camera or cumulus.camera(View(width, height)),
-        suns=(multiple.LATE_MORNING,) if suns is None else suns,
-        medium=medium or Medium(sigma_t, g=multiple.G, phase="hg"),
+        suns=(multiple.OWN.sun,) if suns is None else suns,
+        medium=medium or Medium(sigma_t, g=multiple.OWN.g, phase="hg"),
         background=Sky(),
         mixing=Mixing(),
         scattering="multiple",
@@ -120,4 +120,4 @@ def glimpse_of_multiple(
 
 @functools.cache
 def _coarse_cumulus() -> VoxelGrid:
-    return generate(seed=cumulus.SEED, voxel=multiple.COARSEST)
+    return generate(seed=multiple.OWN.seed, voxel=multiple.COARSEST)

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from refcloud.camera import Camera
 from refcloud.choices import SUN
 from refcloud.conventions import Backend, Observer
@@ -59,32 +57,32 @@ class Parts:
     look: Look | None = None
 
 
-FROM_BELOW = {"eye": np.array(cumulus.EYE), "target": np.array(cumulus.TARGET)}
+FROM_BELOW = {"eye": cumulus.OWN.eye, "target": cumulus.OWN.target}
 AT_BOX = {
-    "eye": np.array(demand.EYE),
-    "target": np.array(demand.TARGET),
-    "fov_y": demand.FOV_Y,
+    "eye": demand.OWN.eye,
+    "target": demand.OWN.target,
+    "fov_y": demand.OWN.fov_y,
 }
 MARCHED = ("camera", "sun", "medium")
-IN_BOX = Parts(MARCHED, AT_BOX, demand.LIGHT, demand.MEDIUM)
+IN_BOX = Parts(MARCHED, AT_BOX, demand.OWN.sun, demand.OWN.medium)
 FRONT = Parts(sun=man.FRONT, medium=man.CLOUD_MEDIUM, look=MAN)
 AGAINST = Parts(ALL, FROM_BELOW, man.BEHIND, look=MAN)
 OF_THE_PLANE = Parts(())
 PARTS = {
-    "cumulus": Parts(ALL, FROM_BELOW, SUN, Medium(cumulus.SIGMA_T), Look()),
+    "cumulus": Parts(ALL, FROM_BELOW, cumulus.OWN.sun, cumulus.OWN.medium, Look()),
     **dict.fromkeys(("man-04", "man-08", "man-09", "man-10"), FRONT),
     "man-13": replace(AGAINST, medium=man.ISOTROPIC),
     "man-14": replace(AGAINST, medium=man.FORWARD),
-    "demand": Parts(MARCHED, FROM_BELOW, demand_hero.SUN, demand_hero.MEDIUM),
+    "demand": Parts(MARCHED, FROM_BELOW, demand_hero.OWN.sun, demand_hero.OWN.medium),
     **dict.fromkeys(("demand-box", "demand-lit", "demand-background"), IN_BOX),
     "demand-faces": Parts(("camera",), AT_BOX),
-    "demand-quad": Parts(("camera", "medium"), AT_BOX, medium=demand.MEDIUM),
+    "demand-quad": Parts(("camera", "medium"), AT_BOX, medium=demand.OWN.medium),
     **dict.fromkeys(
         [f"demand-{n}" for n in ("worley", "worley-inverted", "cells", "perlin")],
         OF_THE_PLANE,
     ),
     "demand-sky": OF_THE_PLANE,
-    "multiple": Parts(MARCHED, FROM_BELOW, multiple.LATE_MORNING),
+    "multiple": Parts(MARCHED, FROM_BELOW, multiple.OWN.sun),
 }
 # What is taken out of a scene's hands begins with these where they are not known.
 BEGIN = Parts(ALL, FROM_BELOW, SUN, Medium(1.0), Look())

@@ -48,7 +48,7 @@ COARSE_LOOK = {"erosion": 0.0, "relief": 0.0, "buffer": 64, "sky_buffer": 32}
 COARSE_SAMPLES = 96
 # Nearer than the scene `cumulus`, since nothing stands beside the cloud.
 EYE = {"eye": np.array([0.0, -12.0, 104.0]), "target": np.array([1.0, 15.0, 0.0])}
-HAZE = {"color": cumulus.HAZE, "length": cumulus.HERO_AIR}
+HAZE = {"color": cumulus.HAZE, "length": cumulus.OWN.hero.air}
 
 GENERATE = group_of(
     "generate",
@@ -80,7 +80,7 @@ SPLAT_GROUPS = (
     ),
     sun_group(SUN),
     second_sun(),
-    medium_group(Medium(cumulus.SIGMA_T)),
+    medium_group(cumulus.OWN.single_medium),
     group_of("look", "Rules of light", Look, near={"tau": TAU_MAN2003}),
     camera_group(EYE),
     SKY,
@@ -113,17 +113,17 @@ BOX_GROUPS = (
         "Noise in the box: scale, voxels",
         box_cloud,
         without=("first", "second"),
-        start={**demand.CLOUD, "voxel": 0.03},
+        start={**vars(demand.OWN.cloud), "voxel": 0.03},
     ),
-    sun_group(demand.LIGHT),
+    sun_group(demand.OWN.sun),
     second_sun(),
-    medium_group(demand.MEDIUM),
+    medium_group(demand.OWN.medium),
     group_of("octaves", "Light model", Octaves, start={"orders": 1}),
     camera_group(
         {
-            "eye": np.array(demand.EYE),
-            "target": np.array(demand.TARGET),
-            "fov_y": demand.FOV_Y,
+            "eye": demand.OWN.eye,
+            "target": demand.OWN.target,
+            "fov_y": demand.OWN.fov_y,
         }
     ),
     _quality(box_picture, start={"tolerance": TOLERANCE}),

@@ -8,8 +8,13 @@ import socket
 import subprocess
 import sys
 import urllib.request
+from pathlib import Path
 
 import pytest
+
+from refcloud.cli import main
+from refcloud.studio.choices import find_setup
+from refcloud.studio.scene_file import scene_text
 
 
 def test_it_serves_until_it_is_interrupted() -> None:
@@ -48,3 +53,19 @@ def test_a_taken_port_is_refused(run) -> None:
         status, out, err = run("studio", "--port", port, "--no-browser")
     assert (status, out) == (2, "")
     assert err.startswith("refcloud: --port: expected a port that is free, got")
+
+
+def test_what_the_page_saves_is_drawn_by_render(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    setup = find_setup("man-10")
+    file = tmp_path / "mine.toml"
+    file.write_text(scene_text(setup, setup.taken({})), "utf-8")
+    mine, named = str(tmp_path / "mine.png"), str(tmp_path / "named.png")
+    size = ["--width", "48", "--height", "36"]
+    assert main(["render", str(file), "-o", mine, *size]) == 0
+    assert main(["render", "man-10", "-o", named, *size]) == 0
+    assert main(["compare", mine, named, "--codes", "0", "--fraction", "0"]) == 0
+    capsys.readouterr()
+    assert main(["render", str(file), "--albedo", "0.5"]) == 2
+    assert "brings its own" in capsys.readouterr().err

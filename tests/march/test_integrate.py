@@ -102,8 +102,8 @@ def test_light_between_nothing_and_all(seed, toward, sigma_t) -> None:
 
 
 def test_suns_add_up() -> None:
-    """In one set of pieces: a sun that is dark still has them cut for it."""
-    other, dark = Sun([1, 0.1, -0.4], [3, 2, 1]), [0.0, 0.0, 0.0]
+    """In one set of pieces: those of a sun that is all but dark are cut as well."""
+    other, dark = Sun([1, 0.1, -0.4], [3, 2, 1]), [1e-300, 1e-300, 1e-300]
     pairs = [(SUN, Sun(other.direction, dark)), (Sun(SUN.direction, dark), other)]
     one, two = (integrate(BLOB, *SOME, suns=p, medium=MEDIUM)[0] for p in pairs)
     both, _ = integrate(BLOB, *SOME, suns=(SUN, other), medium=MEDIUM)
