@@ -121,5 +121,10 @@ def find_scene(name: str) -> Scene:
     """Look a scene up, and name all of them where there is none of that name."""
     if name not in SCENES:
         known = ", ".join(sorted(SCENES))
-        raise ValueError(complaint("scene", f"one of {known}", repr(name)))
+        expected, advice = f"one of {known}", ""
+        if name.endswith(".toml"):
+            advice = "a file: refcloud.declared.scene_from(load_scene(name)) is a scene"
+        elif name.endswith(".npz"):
+            advice = "a file: load_voxels or load_metaballs gives what is rendered"
+        raise ValueError(complaint("scene", expected, repr(name[:60]), advice))
     return SCENES[name]

@@ -122,6 +122,9 @@ def medium_for(
     """
     if not given and density is None:
         return None, ()
+    if given.get("phase", "hg") != "hg" and "g" in given:
+        expected = f"none beside --phase {given['phase']}"
+        raise ValueError(complaint("--g", expected, "one", "--phase hg has a g"))
     if "g" in given and "phase" not in given:
         given = {**given, "phase": "hg"}  # the only phase function that has a g
     rules = (

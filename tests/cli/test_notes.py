@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import refcloud as rc
+import refcloud.cli.animate
 
 SIZE = "--width 16 --height 12"
 MAN = f"medium: tau {rc.lighting.named('man').tau:g} for every ball, albedo"
@@ -38,3 +39,26 @@ def test_the_paper_s_albedo_stays_beside_a_sigma_t(run, here: Path) -> None:
         run(*f"render balls.npz --look man {SIZE} {extra} -o {name}".split())
     one, other = (rc.load_picture(name).linear for name in ("a.npy", "b.npy"))
     np.testing.assert_array_equal(one, other)
+
+
+def test_an_empty_cloud_is_told(run, here: Path) -> None:
+    ended = run(*"generate --shape ellipsoid --threshold 0.99 --voxel 4".split())
+    assert ended.status == 0, ended.err
+    assert "the cloud is empty: no voxel is occupied\n" in ended.out
+
+
+def test_an_interrupted_animation_says_that_it_goes_on(
+    run, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*words: object, **options: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(refcloud.cli.animate, "animate", interrupted)
+    ended = run(*"animate man-10 --frames 2 --turn-eye 9 -o a".split())
+    assert ended.status == 130
+    assert "interrupted; the same command again goes on from" in ended.err
+
+
+def test_a_file_s_name_in_place_of_a_scene_s_is_told_what_to_do() -> None:
+    with pytest.raises(ValueError, match=r"got 'mine.toml'; a file: .*load_scene"):
+        rc.render("mine.toml")
