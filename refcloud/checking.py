@@ -123,7 +123,9 @@ def _check_number(name: str, value: Any, base: type, limits: Range | None) -> An
     if not whole and not math.isfinite(number):
         raise ValueError(complaint(name, expected, f"{number}"))
     if limits is not None and not limits.holds(number):
-        raise ValueError(complaint(name, expected, digits(number), advice(limits)))
+        raise ValueError(
+            complaint(name, expected, digits(number), advice(limits, number))
+        )
     return number
 
 

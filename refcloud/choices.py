@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 
 from refcloud.camera import Camera, frame
@@ -29,22 +32,35 @@ AMBIENT = np.array([0.15, 0.21, 0.32])
 
 
 def default_medium(
-    cloud: Metaballs | VoxelGrid, look: Look | None
+    cloud: Metaballs | VoxelGrid,
+    look: Look | None,
+    *,
+    density: float = 1.0,
+    **changes: Any,
 ) -> tuple[Medium, str]:
-    """Choose a medium, and say which; a look is for clouds that are splatted."""
+    """Choose a medium, and say which; a look is for clouds that are splatted.
+
+    Changes are fields of the medium, instead of the choice. The choice is for the cloud
+    as it is given, before a factor on its density.
+    """
     if look is not None and look.tau is not None:
-        medium = Medium(1.0, ALBEDO_MAN2003)
-        return medium, f"medium: tau {look.tau:g} for every ball, albedo 0.9"
+        medium = replace(Medium(1.0, ALBEDO_MAN2003), **changes)
+        albedo = " ".join(f"{share:g}" for share in np.atleast_1d(medium.albedo))
+        note = f"medium: tau {look.tau:g} for every ball, albedo {albedo}"
+        idle = ["sigma_t"] * ("sigma_t" in changes) + ["density"] * (density != 1.0)
+        return medium, note + (f"; no {' or '.join(idle)} counts" if idle else "")
     thickness = MARCHED_THICKNESS if look is None else THICKNESS
     if isinstance(cloud, VoxelGrid):
         per_unit = grid_through_the_middle(cloud)
     else:
         per_unit = through_the_middle(cloud, 1.0)
     if not per_unit > thickness / 1e300:
-        return Medium(1.0), "medium: sigma_t 1, since the cloud's middle is empty"
+        note = "medium: sigma_t 1, since the cloud's middle is empty"
+        return replace(Medium(1.0), **changes), note
     sigma_t = thickness / per_unit
-    note = f"medium: sigma_t {sigma_t:.4g}, optical depth {thickness:g} in the middle"
-    return Medium(sigma_t), note
+    depth = f"optical depth {density * thickness:g} in the middle"
+    note = f"medium: sigma_t {sigma_t:.4g}, {depth}"
+    return replace(Medium(sigma_t), **changes), note
 
 
 def framed(cloud: Metaballs | VoxelGrid, width: int, height: int) -> Camera:

@@ -163,11 +163,18 @@ def draw_layers(
     skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
     reused = sum(layer.lit is not None for layer in layers)
+    if layers and not any(layer.look.erosion for layer in layers):
+        notes = (*notes, *idle_seed(seed))
     if reused:
         notes = (*notes, f"light: reused for {reused} of {len(layers)} clouds")
     if solved:
         notes = (*notes, f"scattered light: {report_of(solved)}")
     return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
+
+
+def idle_seed(seed: int) -> tuple[str, ...]:
+    """Say that a seed changes nothing, since no noise erodes a footprint."""
+    return (f"seed {seed}: nothing here depends on it",) if seed else ()
 
 
 def _unseen(layer: Layer, suns: tuple[Sun, ...]) -> list[Skipped]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -29,8 +30,11 @@ def unit_of(limits: Range) -> str:
     return "" if limits.unit == "1" else f" ({limits.unit})"
 
 
-def advice(limits: Range) -> str:
-    """Say what to do."""
+def advice(limits: Range, number: float = 0.0) -> str:
+    """Say what to do; a number may have been meant in degrees."""
+    angle = math.radians(min(abs(number), 1e9))
+    if limits.unit == "radians" and limits.holds(angle):
+        return f"in radians, {digits(abs(number))} degrees are {angle:.4g}"
     return f"choose within {limits}"
 
 

@@ -11,7 +11,7 @@ from refcloud.camera import Camera, OrthographicCamera, refuse_large
 from refcloud.checking import checked, complaint
 from refcloud.choices import AMBIENT, SUN, default_medium, framed
 from refcloud.cloudmap import VoxelGrid
-from refcloud.compose import Layer, draw_layers, passes_of
+from refcloud.compose import Layer, draw_layers, idle_seed, passes_of
 from refcloud.conventions import (
     MOST_PIXELS,
     Array,
@@ -162,6 +162,9 @@ def render(
         if not (scattering is None or isinstance(scattering, str)):
             expected = "single or multiple beside a scene"
             raise ValueError(complaint("scattering", expected, "solved light"))
+        if scattering is not None and "scattering" not in scene.uses:
+            expected = f"none beside {scene.name}, whose light is not solved"
+            raise ValueError(complaint("scattering", expected, scattering))
         how = tolerance, seed, observe, backend, scattering
         view = View(width, height, camera, suns, medium, look, *how)
         model = scene.model()
@@ -170,7 +173,11 @@ def render(
             picture,
             skipped=model.skipped + picture.skipped,
             seconds={**model.seconds, **picture.seconds},
-            notes=model.notes + picture.notes,
+            notes=(
+                *model.notes,
+                *picture.notes,
+                *(idle_seed(seed) if "seed" not in scene.uses else ()),
+            ),
         )
     notes: list[str] = []
     lit = None
@@ -233,6 +240,7 @@ def render(
             volumes=volumes,
             observe=observe,
         )
+        notes += idle_seed(seed)
     else:
         assert isinstance(drawn, Metaballs)
         assert rules is not None

@@ -15,6 +15,8 @@ from refcloud.lighting.look import LookName
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 
+Use = Literal["scattering", "seed"]
+
 
 @dataclass(frozen=True)
 class View:
@@ -92,6 +94,9 @@ class Scene:
         Draws them.
     motion
         What of it can move; by default nothing.
+    uses
+        Which of a view's choices change its picture; it is refused a scattering, and
+        its picture says that a seed changes nothing, where they are not among them.
     """
 
     name: str
@@ -99,6 +104,7 @@ class Scene:
     model: Callable[[], Model]
     draw: Callable[[Model, View], Picture]
     motion: Motion = Motion()
+    uses: tuple[Use, ...] = ()
 
 
 # Names to scenes; each file of refcloud/scenes enters its own.
@@ -115,5 +121,10 @@ def find_scene(name: str) -> Scene:
     """Look a scene up, and name all of them where there is none of that name."""
     if name not in SCENES:
         known = ", ".join(sorted(SCENES))
-        raise ValueError(complaint("scene", f"one of {known}", repr(name)))
+        expected, advice = f"one of {known}", ""
+        if name.endswith(".toml"):
+            advice = "a file: refcloud.declared.scene_from(load_scene(name)) is a scene"
+        elif name.endswith(".npz"):
+            advice = "a file: load_voxels or load_metaballs gives what is rendered"
+        raise ValueError(complaint("scene", expected, repr(name[:60]), advice))
     return SCENES[name]

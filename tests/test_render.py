@@ -185,7 +185,7 @@ def test_a_scene_hands_on_what_it_made_and_chose(monkeypatch) -> None:
         return dataclasses.replace(picture, notes=("drawn",))
 
     model = Model({"cloud": BALLS}, ("made",), (row,), {"generate": 0.5})
-    scene = Scene("test", "a test", lambda: model, draw)
+    scene = Scene("test", "a test", lambda: model, draw, uses=("seed",))
     monkeypatch.setitem(SCENES, "test", scene)
     picture = render("test", quality="quick", tolerance=0.1, seed=3, look="man")
     assert picture.notes == ("made", "drawn")
@@ -345,13 +345,31 @@ def test_voxels_too_coarse_for_their_depth_are_told() -> None:
         ),
         (
             lambda: render("demand-sky", scattering="multiple"),
-            "scattering: expected none beside a picture of the plane",
+            "scattering: expected none beside demand-sky, whose",
         ),
     ],
 )
 def test_what_a_method_has_no_use_for_is_refused(call, message) -> None:
     with pytest.raises(ValueError, match=rf"^{message}[^\n]*$"):
         call()
+
+
+USES = ("man-10", "demand-lit", "demand-cells", "shader-lit", "simple-sky")
+
+
+@pytest.mark.parametrize("name", USES)
+def test_scenes_refuse_a_scattering_that_they_have_no_use_for(name: str) -> None:
+    with pytest.raises(ValueError, match=r"^(scattering|look): expected"):
+        render(name, width=16, height=12, scattering="multiple")
+
+
+@pytest.mark.parametrize("name", USES)
+def test_a_seed_that_changes_nothing_is_said_to(name: str) -> None:
+    one, other = (render(name, width=16, height=12, seed=k) for k in (0, 7))
+    said = "seed 7: nothing here depends on it" in other.notes
+    assert said <= np.array_equal(one.linear, other.linear)
+    assert said == (name != "demand-lit")
+    assert not any(note.startswith("seed") for note in one.notes)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +77,7 @@ def run(words: Sequence[str]) -> int:
         if isinstance(value, Progress):
             stages.count(value.done, value.frames, value.left)
 
-    with stages.stage("frames"):
+    with stages.stage("frames"), _worded():
         made = animate(
             cloud,
             path,
@@ -93,3 +95,16 @@ def run(words: Sequence[str]) -> int:
     notes.append(f"frames: {made.frames}{kept}; {end}")
     report([*notes, *made.notes], made.skipped, stages.line(), made.path)
     return 0
+
+
+@contextmanager
+def _worded() -> Iterator[None]:
+    """Name what can move as it is typed, where nothing was asked to."""
+    try:
+        yield
+    except ValueError as refusal:
+        text = str(refusal)
+        if text.startswith("moves: "):
+            for option in MOVES:
+                text = re.sub(rf"\b{option.name}(?=[,)])", option.flag, text)
+        raise ValueError(text) from None

@@ -54,8 +54,8 @@ PICTURE = FileOption(
     "--picture",
     (str,),
     None,
-    "Name of a picture (.png or .npy) of the voxels, the balls, and their"
-    " difference, side by side; none without it.",
+    "Name of a picture (.png or .npy) of three panels: voxels on the left, balls in"
+    " the middle, |difference| on the right; none without it.",
 )
 
 

@@ -20,6 +20,7 @@ from refcloud.scenes import SCENES, Scene
 
 ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
 NO_NUMBERS = 1
+KINDS = "a cloud map, metaballs or levels (.npz, of refcloud generate or approximate)"
 TOML = ".toml"
 
 
@@ -34,10 +35,12 @@ def find(what: str) -> bool:
     path = Path(what)
     if what in SCENES or path.suffix == TOML:
         return True
-    if path.suffix != ".npz" and not path.exists():
+    if path.suffix != ".npz" and not path.is_file():
         expected = "a file (.npz, .toml) or one of the scenes " + ", ".join(
             sorted(SCENES)
         )
+        if path.exists():
+            raise ValueError(complaint("WHAT", expected, f"{path}, no file"))
         raise ValueError(complaint("WHAT", expected, repr(what[:60])))
     return False
 
@@ -70,7 +73,8 @@ def load(path: str) -> Metaballs | VoxelGrid | Levels:
     except ValueError as refusal:
         if _is(METABALLS, path):
             raise
-        raise ValueError(f"{refusal}; {VOXELS} files are drawn too") from None
+        got = str(refusal).rpartition(", got ")[2]
+        raise ValueError(complaint(path, KINDS, got)) from None
 
 
 def denser(

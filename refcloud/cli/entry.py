@@ -57,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         _abandon_stdout()
         return PIPE_CLOSED
     except KeyboardInterrupt:
-        return _fail(INTERRUPTED, "interrupted")
+        return _fail(INTERRUPTED, "interrupted" + _going_on(words))
     except MemoryError:
         got = "more than this machine has free"
         advice = "choose a smaller picture, larger voxels or fewer balls"
@@ -106,6 +106,13 @@ def _overview() -> str:
     width = max(map(len, COMMANDS))
     lines += [f"  {name:{width}}  {_module(name).ABOUT}" for name in COMMANDS]
     return "\n".join([*lines, "", "refcloud COMMAND --help gives a command's options."])
+
+
+def _going_on(words: list[str]) -> str:
+    """Say what the same command does with what an interrupted one has left."""
+    if words[:1] != ["animate"]:
+        return ""
+    return "; the same command again goes on from the frames that are there"
 
 
 def _fail(status: int, line: str) -> int:

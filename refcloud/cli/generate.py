@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +13,17 @@ from refcloud.cli.outputs import ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.cloudmap import VoxelGrid, generate, save_voxels
+from refcloud.refusal import complaint
 
 ABOUT = summary(generate)
 OPTIONS = options_of(generate)
 DEFAULTS = {option.name: option.default for option in OPTIONS}
 SUFFIXES = (".npz",)
+# Options that only one shape has a use for.
+ONLY = {
+    **dict.fromkeys(("threshold", "dynamics", "ellipsoids"), "ellipsoid"),
+    **dict.fromkeys(("relief", "edge"), "cumulus"),
+}
 
 
 def command() -> Command:
@@ -35,6 +42,7 @@ def run(words: Sequence[str]) -> int:
     given = command().parse(words)
     chosen = given.of(OPTIONS)
     told = {**DEFAULTS, **chosen}
+    _refuse_idle(told["shape"], chosen)
     name = f"{told['shape']}-seed{told['seed']}-voxels.npz"
     path = ready(given.named(name), SUFFIXES)
     stages = Stages()
@@ -42,8 +50,20 @@ def run(words: Sequence[str]) -> int:
         grid = generate(**chosen, observe=stages.watch)
     with stages.stage("save"):
         save_voxels(grid, path)
-    report([describe(grid)], grid.skipped, stages.line(), path)
+    notes = [describe(grid)]
+    if not occupied(grid):
+        notes.append("the cloud is empty: no voxel is occupied")
+    report(notes, grid.skipped, stages.line(), path)
     return 0
+
+
+def _refuse_idle(shape: str, chosen: Mapping[str, Any]) -> None:
+    """Refuse what the chosen shape has no use for."""
+    for name in chosen:
+        only = ONLY.get(name, shape)
+        if only != shape:
+            flag, expected = f"--{name}", f"none beside --shape {shape}"
+            raise ValueError(complaint(flag, expected, "one", f"--shape {only} has it"))
 
 
 def describe(grid: VoxelGrid) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import cast, get_args
 
 from refcloud.cli.docstrings import summary
@@ -11,10 +12,13 @@ from refcloud.cli.outputs import ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.noise_pictures import Kind, noise_picture
+from refcloud.refusal import complaint
 
 ABOUT = summary(noise_picture)
 OPTIONS = options_of(noise_picture, without=("kind",))
 SUFFIXES = (".png", ".npy")
+KINDS = get_args(Kind)
+OTHER_NAMES = {"perlin": "gradient", "worley": "worley_f1"}  # what many call them
 
 
 def command() -> Command:
@@ -24,7 +28,7 @@ def command() -> Command:
         ABOUT,
         output="name of the picture (.png or .npy); by default KIND-VIEW.png",
     )
-    made.argument("KIND", "which noise: " + ", ".join(get_args(Kind)))
+    made.argument("KIND", "which noise: " + ", ".join(KINDS))
     made.group("the noise", "", OPTIONS)
     return made
 
@@ -33,6 +37,15 @@ def run(words: Sequence[str]) -> int:
     """Draw a kind of noise; its codes are 255 times its values."""
     given = command().parse(words)
     (kind,) = given.arguments
+    if kind not in KINDS:
+        near = (
+            [OTHER_NAMES[kind]]
+            if kind in OTHER_NAMES
+            else get_close_matches(kind, KINDS, 1)
+        )
+        advice = f"did you mean {near[0]}?" if near else ""
+        expected = "one of " + ", ".join(KINDS)
+        raise ValueError(complaint("KIND", expected, repr(kind[:60]), advice))
     chosen = given.of(OPTIONS)
     path = ready(given.named(f"{kind}-{chosen.get('view', 'slice')}.png"), SUFFIXES)
     stages = Stages()

@@ -154,7 +154,11 @@ def prepared(
     scale, mixing = given.of(DENSITY), given.of(MIXING)
     # A factor on the density counts against the file's own optical depth.
     medium, note = medium_for(
-        given.of(MEDIUM), shown, chosen.get("look"), method, fixed=bool(scale)
+        given.of(MEDIUM),
+        shown,
+        chosen.get("look"),
+        method,
+        density=scale.get("density"),
     )
     if levels is not None:
         camera = camera or framed(levels.finest, *size)

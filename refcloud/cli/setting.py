@@ -20,7 +20,7 @@ from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import unit_vector
 from refcloud.lighting import named
 from refcloud.metaballs import Metaballs
-from refcloud.optics import Medium, Sun
+from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
 from refcloud.refusal import complaint
 from refcloud.render import is_marched, render, size_of
 from refcloud.sky import Sky
@@ -96,7 +96,7 @@ def medium_for(
     look: Literal["cumulus", "man"] | None,
     method: Literal["splat", "march"] | None,
     *,
-    fixed: bool = False,
+    density: float | None = None,
 ) -> tuple[Medium | None, tuple[str, ...]]:
     """Complete the medium from `render`'s own choice; None where that is left to it.
 
@@ -108,8 +108,8 @@ def medium_for(
         What is drawn: balls, or a cloud map that is marched; None for a scene.
     look, method
         How.
-    fixed
-        Whether the cloud will change, so that the choice must be made now.
+    density
+        Factor by which the cloud's density will change after the choice, if it will.
 
     Returns
     -------
@@ -120,19 +120,30 @@ def medium_for(
     ValueError
         A scene's medium is given without its extinction.
     """
-    if not given and not fixed:
+    if not given and density is None:
         return None, ()
+    if given.get("phase", "hg") != "hg" and "g" in given:
+        expected = f"none beside --phase {given['phase']}"
+        raise ValueError(complaint("--g", expected, "one", "--phase hg has a g"))
     if "g" in given and "phase" not in given:
         given = {**given, "phase": "hg"}  # the only phase function that has a g
-    if "sigma_t" in given:
+    rules = (
+        None
+        if cloud is not None and is_marched(cloud, method)
+        else named(look or "cumulus")
+    )
+    paper = rules is not None and rules.tau is not None  # its albedo is not 1
+    if "sigma_t" in given and not paper:
         return Medium(**given), ()
     if cloud is None:
+        if "sigma_t" in given:
+            return Medium(**{"albedo": ALBEDO_MAN2003, **given}), ()
         expected = f"it beside --{next(iter(given), 'density')}"
         advice = "a scene's medium is given as a whole"
         raise ValueError(complaint("--sigma-t", expected, "none", advice))
-    rules = None if is_marched(cloud, method) else named(look or "cumulus")
-    medium, note = default_medium(cloud, rules)
-    return dataclasses.replace(medium, **given), (note,)
+    factor = 1.0 if density is None else density
+    medium, note = default_medium(cloud, rules, density=factor, **given)
+    return medium, (note,)
 
 
 def suns_for(given: Mapping[str, Any], is_scene: bool) -> tuple[Sun, ...] | None:

@@ -44,6 +44,7 @@ def scene_from(declared: Declaration | Changed) -> Scene:
         partial(model, declared),
         partial(draw, declared),
         Motion(partial(eye, declared), declared.suns or (SUN,)),
+        ("scattering", "seed"),
     )
 
 
@@ -105,6 +106,9 @@ def draw(declared: Declaration, model: Model, view: View) -> Picture:
     if medium is None:
         medium, note = default_medium(last, base)
         notes = (note,)
+    elif view.medium is not None and base.tau is not None:
+        given = {"sigma_t": medium.sigma_t, "albedo": medium.albedo}
+        notes = (default_medium(last, base, **given)[1],)
     layers = []
     for number, cloud in enumerate(declared.clouds):
         air = cloud.place.air

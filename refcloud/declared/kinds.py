@@ -14,7 +14,7 @@ from typing import Any
 
 from refcloud.checking import complaint
 from refcloud.image import Picture
-from refcloud.scene import Model, Motion, Scene, View, enter
+from refcloud.scene import Model, Motion, Scene, Use, View, enter
 
 
 def nothing_yet(of: Any) -> Model:
@@ -43,6 +43,8 @@ class Kind:
         Says, from parameters, what can move.
     model
         Makes the clouds, from parameters.
+    uses
+        As of `Scene`.
     """
 
     name: str
@@ -51,11 +53,12 @@ class Kind:
     draw: Callable[[Any, Model, View], Picture]
     motion: Callable[[Any], Motion]
     model: Callable[[Any], Model] = nothing_yet
+    uses: tuple[Use, ...] = ()
 
     def scene(self, name: str, title: str, of: Any) -> Scene:
         """Make a scene of this kind with parameters `of`."""
         model, draw = partial(self.model, of), partial(self.draw, of)
-        return Scene(name, title, model, draw, self.motion(of))
+        return Scene(name, title, model, draw, self.motion(of), self.uses)
 
 
 @dataclass(frozen=True)

@@ -238,4 +238,5 @@ def _refuse_unknown(where: str, table: Mapping[str, Any], known: Any) -> None:
             near = difflib.get_close_matches(key, known, 1)
             advice = f"did you mean {near[0]}?" if near else ""
             expected = "one of " + ", ".join(known)
-            raise ValueError(complaint(f"{where}{key}", expected, "it", advice))
+            got = repr(key[:60])
+            raise ValueError(complaint(f"{where}{key}", expected, got, advice))

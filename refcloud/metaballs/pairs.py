@@ -235,8 +235,9 @@ def _refuse_too_many(radii: Array) -> None:
     covered *= max(largest, 1.0) ** 3
     if not max(covered, (2.0 * largest) ** 3) <= MOST_PAIRS:
         raise ValueError(
-            f"overlap: expected balls that cover at most {MOST_PAIRS} voxels together,"
-            f" got {covered:.3g}; lower overlap or least_radius, or use larger voxels"
+            "overlap or least_radius: expected balls that cover at most"
+            f" {MOST_PAIRS} voxels together, got {covered:.3g};"
+            " lower overlap or least_radius, or use larger voxels"
         )
 
 

@@ -229,5 +229,13 @@ def turning(of: Cumulus) -> Motion:
 
 
 enter_kind(
-    Kind("cumulus", "a cumulus over a field of small clouds", OWN, draw, turning, model)
+    Kind(
+        "cumulus",
+        "a cumulus over a field of small clouds",
+        OWN,
+        draw,
+        turning,
+        model,
+        ("scattering", "seed"),
+    )
 )

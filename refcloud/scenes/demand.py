@@ -46,7 +46,7 @@ from refcloud.march import ray_box
 from refcloud.optics import Medium, Sun
 from refcloud.raster import Framebuffer, draw_box
 from refcloud.raster.walls import LIGHT_BLUE
-from refcloud.scene import Model, Motion, View
+from refcloud.scene import Model, Motion, Use, View
 from refcloud.scenes.demand_plane import mended, pair, plain, refuse_given
 
 VOXEL, COARSEST = 0.02, 0.1  # scene units: of a picture 1024 pixels wide; at most
@@ -151,6 +151,7 @@ OWN = Boxed(
 WALLED = dataclasses.replace(OWN, frame="walls")
 QUAD = dataclasses.replace(OWN, frame="lines", light=UNLIT, shone=False)
 FACES = Faces(OWN.lower, OWN.upper, size=64, cells=4, seed=2, threshold=0.45)
+USES: tuple[Use, ...] = ("scattering", "seed")
 
 
 def cloud_in_box(of: Boxed, view: View) -> VoxelGrid:
@@ -291,4 +292,5 @@ for name, title, own, draw, motion in (
     ("lit", "the cloud, lit", OWN, boxed, blown),
     ("background", "a plain background and the sky", OWN, backgrounds, blown),
 ):
-    enter_kind(Kind(f"demand-{name}", f"document D: {title}", own, draw, motion))
+    title = f"document D: {title}"
+    enter_kind(Kind(f"demand-{name}", title, own, draw, motion, uses=USES))

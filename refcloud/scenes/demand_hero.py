@@ -257,5 +257,12 @@ def turning(of: Hero) -> Motion:
 
 
 enter_kind(
-    Kind("demand", "a marched cumulus over a field of small ones", OWN, draw, turning)
+    Kind(
+        "demand",
+        "a marched cumulus over a field of small ones",
+        OWN,
+        draw,
+        turning,
+        uses=("scattering", "seed"),
+    )
 )

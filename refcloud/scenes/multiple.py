@@ -115,5 +115,12 @@ def turning(of: Multiple) -> Motion:
 
 
 enter_kind(
-    Kind("multiple", "a cumulus with every order of scattering", OWN, draw, turning)
+    Kind(
+        "multiple",
+        "a cumulus with every order of scattering",
+        OWN,
+        draw,
+        turning,
+        uses=("scattering",),
+    )
 )

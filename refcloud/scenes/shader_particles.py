@@ -199,5 +199,6 @@ enter_kind(
         draw,
         turning,
         particles,
+        ("seed",),
     )
 )

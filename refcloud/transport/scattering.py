@@ -254,8 +254,8 @@ def report_of(lights: Sequence[ScatteredLight]) -> str:
     tau = max(thickest_voxel(light.grid, light.medium) for light in lights)
     if tau > COARSE:
         text += (
-            f"; voxels are up to {tau:.3g} optical depths thick: light scattered more"
-            " than once is short by a fifth and more, use smaller voxels"
+            f"; its cells are up to {tau:.3g} optical depths thick: light that is"
+            " scattered more than once is then short by a fifth and more"
         )
     if all(light.converged for light in lights):
         return text

@@ -236,7 +236,7 @@ def test_a_cloud_map_is_marched(cloud, run, small) -> None:
     status, out, err = run(*line.split())
     assert (status, err) == (0, "")
     assert "marched: light that is scattered more than once is left out\n" in out
-    assert "optical depth 16 in the middle" in out
+    assert "optical depth 32 in the middle" in out
     sigma_t = float(re.findall(r"sigma_t (\S+),", out)[0])
     grid = cloud[0]
     dense = rc.VoxelGrid(2.0 * grid.density, grid.lower, grid.upper)

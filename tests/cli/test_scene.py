@@ -12,6 +12,10 @@ def test_a_written_scene_is_rendered_and_changed(run, here: Path) -> None:
     for what, out in (("man-10", "a.png"), ("man-10.toml", "b.png")):
         assert run(*f"render {what} {SIZE} -o {out}".split()).status == 0
     assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
+    ended = run("scene", "man-10")
+    assert (ended.status, ended.out) == (2, "")
+    assert "--output: expected a new file, got man-10.toml; " in ended.err
+    assert run("scene", "man-10", "--force").status == 0
     text = Path("man-10.toml").read_text("utf-8")
     Path("few.toml").write_text(text.replace("count = 30", "count = 5"), "utf-8")
     ended = run(*f"render few.toml {SIZE}".split())

@@ -1,0 +1,64 @@
+"""What the commands say of their choices is what the picture was made with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refcloud as rc
+import refcloud.cli.animate
+
+SIZE = "--width 16 --height 12"
+MAN = f"medium: tau {rc.lighting.named('man').tau:g} for every ball, albedo"
+
+
+@pytest.mark.parametrize(
+    ("line", "note"),
+    [
+        ("balls.npz --density 0", "optical depth 0 in the middle"),
+        ("balls.npz --density .05", "optical depth 2 in the middle"),
+        ("balls.npz --density 1e6", "optical depth 4e+07 in the middle"),
+        ("voxels.npz --density .05", "optical depth 0.8 in the middle"),
+        ("balls.npz --look man", f"{MAN} 0.9\n"),
+        ("balls.npz --look man --albedo 0", f"{MAN} 0\n"),
+        ("balls.npz --look man --sigma-t 7", f"{MAN} 0.9; no sigma_t counts\n"),
+        ("balls.npz --look man --density 2", f"{MAN} 0.9; no density counts\n"),
+        ("man-10 --sigma-t 7 --albedo .5", f"{MAN} 0.5; no sigma_t counts\n"),
+    ],
+)
+def test_the_medium_is_told_as_it_is(line: str, note: str, run, here: Path) -> None:
+    ended = run(*f"render {line} {SIZE} -o a.png".split())
+    assert ended.status == 0, ended.err
+    assert note in ended.out
+
+
+def test_the_paper_s_albedo_stays_beside_a_sigma_t(run, here: Path) -> None:
+    for extra, name in (("", "a.npy"), ("--sigma-t 7", "b.npy")):
+        run(*f"render balls.npz --look man {SIZE} {extra} -o {name}".split())
+    one, other = (rc.load_picture(name).linear for name in ("a.npy", "b.npy"))
+    np.testing.assert_array_equal(one, other)
+
+
+def test_an_empty_cloud_is_told(run, here: Path) -> None:
+    ended = run(*"generate --shape ellipsoid --threshold 0.99 --voxel 4".split())
+    assert ended.status == 0, ended.err
+    assert "the cloud is empty: no voxel is occupied\n" in ended.out
+
+
+def test_an_interrupted_animation_says_that_it_goes_on(
+    run, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*words: object, **options: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(refcloud.cli.animate, "animate", interrupted)
+    ended = run(*"animate man-10 --frames 2 --turn-eye 9 -o a".split())
+    assert ended.status == 130
+    assert "interrupted; the same command again goes on from" in ended.err
+
+
+def test_a_file_s_name_in_place_of_a_scene_s_is_told_what_to_do() -> None:
+    with pytest.raises(ValueError, match=r"got 'mine.toml'; a file: .*load_scene"):
+        rc.render("mine.toml")
