@@ -27,8 +27,19 @@ SUN = Sun(
     np.array([-0.62, 0.62, 0.42]),
     1.75 * WHOLE_SPHERE * np.array([1.0, 0.96, 0.89]),
 )
+# Solved light loses nothing to orders that are left out: so weak a sun makes the
+# brightest parts of a cloud nearly white, where the other leaves a tenth of it blank.
+SOLVED_SUN = Sun(SUN.direction, SUN.irradiance * (0.5 / 1.75))
 # Mean radiance of a clear sky above and a grey ground below, by eye.
 AMBIENT = np.array([0.15, 0.21, 0.32])
+
+
+def default_sun(scattering: object) -> tuple[Sun, str]:
+    """Choose a sun for light scattered once or for solved light, and say which."""
+    if scattering is None or scattering == "single":
+        return SUN, ""
+    light = " ".join(f"{value:.3g}" for value in SOLVED_SUN.irradiance)
+    return SOLVED_SUN, f"sun: irradiance {light}, for the brightest to be near white"
 
 
 def default_medium(

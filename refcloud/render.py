@@ -9,7 +9,7 @@ import numpy as np
 
 from refcloud.camera import Camera, OrthographicCamera, refuse_large
 from refcloud.checking import checked, complaint
-from refcloud.choices import AMBIENT, SUN, default_medium, framed
+from refcloud.choices import AMBIENT, default_medium, default_sun, framed
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import Layer, draw_layers, idle_seed, passes_of
 from refcloud.conventions import (
@@ -90,7 +90,8 @@ def render(
         Size where no camera is given, pixels; by quality 320 x 240 or 1024 x 768. One
         alone keeps that shape, 4 to 3.
     suns
-        The lights, one or several; None for one from the front left.
+        The lights, one or several; None for one from the front left, weaker for light
+        that is solved.
     medium
         What the cloud is made of; None sets sigma_t so that the optical depth through
         the cloud's middle is 40, or 16 where it is marched.
@@ -224,12 +225,14 @@ def render(
         )
         notes.append(f"camera: eye {eye}, target {target}")
     behind = Sky() if background is None else background
-    lights = (SUN,) if suns is None else suns
+    if suns is None:
+        sun, note = default_sun(scattering)
+        suns, notes = (sun,), [*notes, note] if note else notes
     if march:
         picture = draw_march(
             drawn,
             camera,
-            lights,
+            suns,
             behind,
             medium=medium,
             haze=haze,
@@ -242,12 +245,11 @@ def render(
         )
         notes += idle_seed(seed)
     else:
-        assert isinstance(drawn, Metaballs)
-        assert rules is not None
+        assert isinstance(drawn, Metaballs) and rules is not None  # noqa: PT018
         picture = draw_layers(
             [Layer(drawn, medium, rules, haze, lit, scattering)],
             camera,
-            lights,
+            suns,
             behind,
             tolerance=tolerance,
             seed=seed,

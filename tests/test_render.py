@@ -410,3 +410,10 @@ def test_a_seed_that_changes_nothing_is_said_to(name: str) -> None:
 def test_what_leaves_no_room_for_products_is_refused(call, message) -> None:
     with pytest.raises(ValueError, match=rf"^{message}[^\n]*$"):
         call()
+
+
+def test_the_default_sun_of_solved_light_leaves_clouds_their_shades() -> None:
+    picture = render(BALLS, width=24, height=18, scattering="multiple", tolerance=0.05)
+    assert any(note.startswith("sun: irradiance 6.28 6.03") for note in picture.notes)
+    # Of the cloud's pixels, a hundredth at most would clip.
+    assert (picture.codes().max(axis=2) == 255).mean() < 0.01

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from refcloud.camera import AnyCamera
-from refcloud.choices import SUN, default_medium, framed
+from refcloud.choices import SUN, default_medium, default_sun, framed
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import LIGHT, passes_of
 from refcloud.image import Picture
@@ -79,7 +79,7 @@ def scene_of(cloud: Metaballs | VoxelGrid, how: Mapping[str, Any]) -> Scene:
         "a cloud",
         partial(Model, {}),
         partial(draw, cloud, dict(how)),
-        Motion(partial(frame_of, drawn), (SUN,)),
+        Motion(partial(frame_of, drawn), (default_sun(how.get("scattering"))[0],)),
     )
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from refcloud.camera import AnyCamera
 from refcloud.choices import framed
 from refcloud.cli.clouds import denser, describe, find, load, scene_of
 from refcloud.cli.docstrings import parameter_texts, summary
@@ -30,6 +32,7 @@ from refcloud.cloudmap import VoxelGrid
 from refcloud.image import Picture
 from refcloud.march import Mixing
 from refcloud.metaballs import Levels, Metaballs, choose_level
+from refcloud.metaballs.levels import covered_share, picture_bounds
 from refcloud.refusal import complaint
 from refcloud.render import as_drawn, render
 from refcloud.scenes import Scene
@@ -139,7 +142,7 @@ def prepared(
     what = given.arguments[0]
     is_scene = find(what)
     size = size_for(chosen)
-    suns = suns_for(given.of(SUN), is_scene)
+    suns = suns_for(given.of(SUN), is_scene, chosen.get("scattering"))
     if is_scene:
         cloud, notes = scene_of(what), []
     else:
@@ -163,7 +166,7 @@ def prepared(
     if levels is not None:
         camera = camera or framed(levels.finest, *size)
         cloud = choose_level(levels, camera, tolerance=chosen["tolerance"])
-        notes.append(f"level of {len(cloud)} balls")
+        notes.append(level_note(levels, camera, cloud))
     if not isinstance(cloud, Scene):
         cloud = denser(cloud, **scale)
     elif scale:
@@ -175,3 +178,19 @@ def prepared(
         "mixing": Mixing(**mixing) if mixing else None,
     }
     return cloud, parts, [*notes, *note]
+
+
+def level_note(levels: Levels, camera: AnyCamera, chosen: Metaballs) -> str:
+    """Say which level was chosen, and from which tolerance on others would be.
+
+    What counts is the share of the picture that the cloud covers, not its pixels.
+    """
+    share = covered_share(levels.finest, camera)
+    bounds = picture_bounds(levels, share)
+    fewer = [
+        f"{len(balls)} from --tolerance {math.ceil(1e3 * bound) / 1e3:g}"
+        for balls, bound in zip(levels.levels, bounds, strict=True)
+        if len(balls) < len(chosen) and bound <= 1.0
+    ]
+    line = f"level of {len(chosen)} balls, at {100.0 * share:.3g} % of the picture"
+    return f"{line}: {', '.join(fewer)}" if fewer else line

@@ -13,8 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from refcloud.camera import Camera
-from refcloud.choices import SUN as DEFAULT_SUN
-from refcloud.choices import default_medium, framed
+from refcloud.choices import default_medium, default_sun, framed
 from refcloud.cli.options import Option, options_of
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import unit_vector
@@ -146,7 +145,9 @@ def medium_for(
     return medium, (note,)
 
 
-def suns_for(given: Mapping[str, Any], is_scene: bool) -> tuple[Sun, ...] | None:
+def suns_for(
+    given: Mapping[str, Any], is_scene: bool, scattering: str | None = None
+) -> tuple[Sun, ...] | None:
     """Pair directions with irradiances; None where nothing was given.
 
     Raises
@@ -157,6 +158,7 @@ def suns_for(given: Mapping[str, Any], is_scene: bool) -> tuple[Sun, ...] | None
     """
     if not given:
         return None
+    default, _ = default_sun(scattering)
     directions = given.get("direction", [])
     light = given.get("irradiance", [])
     for direction in directions:
@@ -167,10 +169,10 @@ def suns_for(given: Mapping[str, Any], is_scene: bool) -> tuple[Sun, ...] | None
             raise ValueError(
                 complaint("--sun", "it beside --irradiance", "none", advice)
             )
-        directions = [DEFAULT_SUN.direction]
+        directions = [default.direction]
     if len(light) not in (0, 1, len(directions)):
         expected = f"one for all or {len(directions)}, one for each --sun"
         raise ValueError(complaint("--irradiance", expected, f"{len(light)}"))
-    light = light or [DEFAULT_SUN.irradiance]  # a moved sun shines as it did
+    light = light or [default.irradiance]  # a moved sun shines as it did
     light = light * len(directions) if len(light) == 1 else light
     return tuple(Sun(d, i) for d, i in zip(directions, light, strict=True))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import dataclasses
 import time
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from refcloud.camera import Camera
-from refcloud.choices import SUN, default_medium, framed
+from refcloud.choices import default_medium, default_sun, framed
 from refcloud.cloudmap import VoxelGrid, generate
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Skipped
@@ -38,12 +39,13 @@ def scene_from(declared: Declaration | Changed) -> Scene:
     if isinstance(declared, Changed):
         kind = find_kind(declared.kind)
         return kind.scene(declared.name, declared.title, declared.of)
+    sun, _ = default_sun(declared.scattering)
     return Scene(
         declared.name,
         declared.title,
         partial(model, declared),
         partial(draw, declared),
-        Motion(partial(eye, declared), declared.suns or (SUN,)),
+        Motion(partial(eye, declared), declared.suns or (sun,)),
         ("scattering", "seed"),
     )
 
@@ -107,8 +109,13 @@ def draw(declared: Declaration, model: Model, view: View) -> Picture:
         medium, note = default_medium(last, base)
         notes = (note,)
     elif view.medium is not None and base.tau is not None:
-        given = {"sigma_t": medium.sigma_t, "albedo": medium.albedo}
+        given: dict[str, Any] = {"sigma_t": medium.sigma_t, "albedo": medium.albedo}
         notes = (default_medium(last, base, **given)[1],)
+    scattering = view.scattering or declared.scattering
+    suns = view.suns if view.suns is not None else declared.suns
+    if not suns and view.suns is None:
+        sun, note = default_sun(scattering)
+        suns, notes = (sun,), (*notes, *([note] if note else []))
     layers = []
     for number, cloud in enumerate(declared.clouds):
         air = cloud.place.air
@@ -118,13 +125,13 @@ def draw(declared: Declaration, model: Model, view: View) -> Picture:
                 medium,
                 dataclasses.replace(base, **cloud.look),
                 None if air is None else Haze(declared.sky.haze, air),
-                scattering=view.scattering or declared.scattering,
+                scattering=scattering,
             )
         )
     picture = draw_layers(
         layers,
         view.camera or eye(declared, model, view),
-        view.suns if view.suns is not None else declared.suns or (SUN,),
+        suns,
         declared.sky,
         tolerance=view.tolerance,
         seed=view.seed,

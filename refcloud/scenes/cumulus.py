@@ -18,6 +18,7 @@ import numpy as np
 
 from refcloud.camera import Camera
 from refcloud.checking import check_fields
+from refcloud.choices import SUN
 from refcloud.cloudmap import generate
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Positive, Range, Seed, Skipped, Vector
@@ -27,7 +28,6 @@ from refcloud.lighting import Haze, Look, named
 from refcloud.lighting.look import GROUND_LIGHT, SKY_LIGHT
 from refcloud.metaballs import Metaballs, approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium, Sun
-from refcloud.render import SUN
 from refcloud.scene import Model, Motion, View
 from refcloud.sky import Sky
 from refcloud.transport.plans import PLANS

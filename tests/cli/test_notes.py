@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -62,3 +63,15 @@ def test_an_interrupted_animation_says_that_it_goes_on(
 def test_a_file_s_name_in_place_of_a_scene_s_is_told_what_to_do() -> None:
     with pytest.raises(ValueError, match=r"got 'mine.toml'; a file: .*load_scene"):
         rc.render("mine.toml")
+
+
+def test_the_level_s_note_says_which_tolerance_takes_fewer_balls(
+    run, here: Path
+) -> None:
+    grid = rc.VoxelGrid(np.ones((4, 4, 4)), [0, 0, 0], [1, 1, 1])
+    rc.metaballs.save_levels(rc.levels_of_detail(grid, counts=(2, 20)), "levels.npz")
+    ended = run(*f"render levels.npz --fov-y 2.5 {SIZE} --tolerance 0".split())
+    found = re.search(r"level of 20 balls, at .* 2 from --tolerance (\S+)\n", ended.out)
+    assert found, ended.out
+    again = run(*f"render levels.npz --fov-y 2.5 {SIZE} --tolerance {found[1]}".split())
+    assert re.search(r"level of 2 balls, at \S+ % of the picture\n", again.out)

@@ -136,8 +136,8 @@ def test_levels_go_from_one_file_to_a_picture(cloud, run, small) -> None:
     size = ["--width", 24, "--height", 18]
     coarse = run("render", "small-levels.npz", *size, "--tolerance", 1, "-o", "a.png")
     fine = run("render", "small-levels.npz", *size, "--tolerance", 0, "-o", "b.png")
-    assert f"level of {len(levels.finest)} balls\n" in fine.out
-    assert f"level of {len(levels.finest)} balls\n" not in coarse.out
+    assert f"level of {len(levels.finest)} balls, at " in fine.out
+    assert f"level of {len(levels.finest)} balls, at " not in coarse.out
     assert same_bytes(rc.render(levels.finest, width=24, height=18), "b.png")
 
 
