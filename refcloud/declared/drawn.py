@@ -109,7 +109,7 @@ def draw(declared: Declaration, model: Model, view: View) -> Picture:
         medium, note = default_medium(last, base)
         notes = (note,)
     elif view.medium is not None and base.tau is not None:
-        given: dict[str, Any] = {"sigma_t": medium.sigma_t, "albedo": medium.albedo}
+        given: Any = {"sigma_t": medium.sigma_t, "albedo": medium.albedo}
         notes = (default_medium(last, base, **given)[1],)
     scattering = view.scattering or declared.scattering
     suns = view.suns if view.suns is not None else declared.suns
