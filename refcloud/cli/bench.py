@@ -96,6 +96,7 @@ def subjects() -> dict[str, str]:
     """Say in a line what each name measures."""
     found = {name: subject.title for name, subject in bench.SUBJECTS.items()}
     found[STABILITY] = "where each algorithm keeps its digits: errors alone"
+    found[SKIPPING] = "what each named scene leaves out: counts, shares and bounds"
     found[CERTIFICATES] = "how often a certificate fails, on generated scenes"
     return found
 

@@ -225,7 +225,7 @@ def own_eye(model: Model, view: View, *, of: Cumulus) -> Camera:
 
 def turning(of: Cumulus) -> Motion:
     """Turn eye and sun."""
-    return Motion(partial(own_eye, of=of), (of.single_sun,))
+    return Motion(partial(own_eye, of=of), (of.sun,))
 
 
 enter_kind(

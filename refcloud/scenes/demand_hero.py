@@ -253,7 +253,7 @@ def own_eye(model: Model, view: View, *, of: Hero) -> Camera:
 
 def turning(of: Hero) -> Motion:
     """Turn eye and sun."""
-    return Motion(partial(own_eye, of=of), (of.octave_sun,))
+    return Motion(partial(own_eye, of=of), (of.sun,))
 
 
 enter_kind(

@@ -51,7 +51,7 @@ def folded_beams(
     Examples
     --------
     >>> [beam.round(4).tolist() for beam in folded_beams([1.0], [2], [0], turned=0.5)]
-    [[0.4091], [0.1705]]
+    [[0.4162], [0.093]]
     """
     k = np.sqrt((1.0 - turned) * (1.0 + turned))
     r = (1.0 - k) / (1.0 + k)

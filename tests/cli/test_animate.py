@@ -41,7 +41,7 @@ def test_every_option_goes_to_the_library(run, here: Path) -> None:
         width=16,
         height=12,
         suns=rc.Sun([1, 1, 0], rc.choices.SUN.irradiance),
-        medium=rc.Medium(2.0),
+        medium=rc.Medium(2.0, 0.9),  # the albedo of the paper
         look="man",
         exposure=0.5,
         dither=False,
@@ -49,7 +49,8 @@ def test_every_option_goes_to_the_library(run, here: Path) -> None:
     assert Path("a.gif").read_bytes() == Path("b.gif").read_bytes()
     lines = out.splitlines()
     assert lines[0] == "balls.npz: 2 balls"
-    assert lines[1] == "frames: 3; the way does not close"
+    assert lines[1].endswith("albedo 0.9; no sigma_t counts")
+    assert lines[2] == "frames: 3; the way does not close"
     assert re.fullmatch(r"seconds: load .*, frames .*, file .*, total .*", lines[-2])
     assert lines[-1] == "a.gif"
 

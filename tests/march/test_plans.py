@@ -14,7 +14,7 @@ from refcloud.transport.plans import ERRORS, FEW, error_of, plan_for
 
 def picture(grid, sun: Sun, medium: Medium, plan: str) -> np.ndarray:
     light = scattered_light(grid, sun, medium=medium, plan=plan)
-    how = {"suns": sun, "medium": medium, "scattering": light, "tolerance": 0.02}
+    how = {"suns": sun, "medium": medium, "scattering": light}
     return integrate(grid, *view(16), **how)[0][:, 0]
 
 
@@ -23,7 +23,7 @@ def test_a_tolerance_takes_the_cheapest_plan_that_keeps_it() -> None:
     tolerances = (0.0, 1e-5, 1e-3, 0.01, 0.03, 0.06)
     for depth, expected in (
         (0.125, ("finest", "finer", "fine", "reference", "standard", "quick")),
-        (1.0, ("finest", "finer", "fine", "reference", "reference", "reference")),
+        (1.0, ("finest", "finer", "fine", "fine", "reference", "reference")),
     ):
         chosen = [plan_for(t, sun, medium, depth) for t in tolerances]
         assert chosen == [PLANS[name] for name in expected]

@@ -45,7 +45,9 @@ RIGHT = {
 SMALL = {
     "render": ["--width", "6", "--height", "4"],
     "animate": ["--width", "6", "--height", "4", "--jobs", "1", "--frames", "2"],
-    "generate": ["--diameters", "8", "6", "6", "--voxel", "1", "--relief", "1"],
+    "generate": [
+        *("--diameters", "8", "6", "6", "--voxel", "1", "--relief", "1", "--edge", "1"),
+    ],
     "approximate": ["--count", "3"],
     "noise": ["--size", "8"],
 }

@@ -110,7 +110,17 @@ def test_pictures_are_those_that_are_declared() -> None:
 def test_pages_link_to_each_other() -> None:
     for file in sorted(page.HERE.glob("*.md")):
         for link in re.findall(r"\]\(([^)]+)\)", file.read_text("utf-8")):
-            assert (page.HERE / link).exists(), f"{file.name}: {link}"
+            place, _, part = link.partition("#")
+            target = page.HERE / place if place else file
+            assert target.exists(), f"{file.name}: {link}"
+            if part and target.suffix == ".md":
+                assert part in anchors(target), f"{file.name}: {link}"
+
+
+def anchors(page: Path) -> set[str]:
+    """Give the marks of a page's headings, as Markdown makes them."""
+    heads = re.findall(r"^#+ (.+)$", page.read_text("utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", h).strip().lower().replace(" ", "-") for h in heads}
 
 
 def test_library_code_is_shown_without_its_long_docstring() -> None:
