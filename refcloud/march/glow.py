@@ -28,6 +28,7 @@ from refcloud.transport.scattering import harmonics_toward, source_terms
 
 Numbers = NDArray[Any]
 
+MOST_STEPS = 64  # for each voxel that a ray may meet
 UP_TO = integrals_up_to(POINTS, POINTS)
 SAMPLES = 1 << 19  # at a time: some 100 MB of temporaries
 DEEPEST = 16.0  # optical depth behind which less than 1e-7 shows
@@ -183,7 +184,10 @@ def by_steps(grid: Lattice, origins: Array, directions: Array, apart: float) -> 
     place, slope = grid.cells_of(origins), directions / grid.size
     t0, t1 = slabs(place, slope, grid.first, grid.last, np.zeros(len(origins)))
     length = np.maximum(t1 - t0, 0.0)
-    counts = np.ceil(length / apart).astype(int)
+    # Voxels far flatter than wide would ask for steps without end: a ray meets no more
+    # voxels than there are along all axes.
+    bound = MOST_STEPS * sum(grid.counts)
+    counts = np.ceil(np.minimum(length / apart, bound)).astype(int)
     most = int(counts.max(initial=0))
     stretch = length / np.maximum(counts, 1)
     number = np.arange(most)
