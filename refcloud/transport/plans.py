@@ -102,8 +102,8 @@ ERRORS = {
     "quick": (0.05, 0.15),
     "standard": (0.022, 0.1),
     "reference": (0.0032, 0.012),
-    "fine": (1.4e-4, 7.5e-4),
-    "finer": (4.5e-6, 7.5e-6),
+    "fine": (1.4e-4, 2.7e-3),
+    "finer": (4.5e-6, 1.3e-5),
 }
 BLUNTEST = 0.6
 FEW = ("quick", "standard")

@@ -23,7 +23,7 @@ def test_a_tolerance_takes_the_cheapest_plan_that_keeps_it() -> None:
     tolerances = (0.0, 1e-5, 1e-3, 0.01, 0.03, 0.06)
     for depth, expected in (
         (0.125, ("finest", "finer", "fine", "reference", "standard", "quick")),
-        (1.0, ("finest", "finer", "fine", "fine", "reference", "reference")),
+        (1.0, ("finest", "finest", "finer", "fine", "reference", "reference")),
     ):
         chosen = [plan_for(t, sun, medium, depth) for t in tolerances]
         assert chosen == [PLANS[name] for name in expected]
