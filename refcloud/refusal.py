@@ -15,6 +15,13 @@ def complaint(name: str, expected: str, got: str, advice: str = "") -> str:
     return f"{name}: expected {expected}, got {got}" + (f"; {advice}" if advice else "")
 
 
+def refuse_beside(what: str, **given: object) -> None:
+    """Refuse arguments that are given beside something that brings its own."""
+    for name, value in given.items():
+        if value is not None:
+            raise ValueError(complaint(name, f"none beside {what}", "one"))
+
+
 def digits(number: float) -> str:
     """Write a number; a whole one in full as long as a line holds it."""
     if isinstance(number, int):

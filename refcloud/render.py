@@ -33,6 +33,7 @@ from refcloud.march.multiple import Scattering
 from refcloud.march_picture import draw_march
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
+from refcloud.refusal import refuse_beside
 from refcloud.scene import Scene, View, find_scene
 from refcloud.sky import Sky
 from refcloud.transport import LightVolume
@@ -151,7 +152,7 @@ def render(
     if isinstance(cloud, (Scene, str)):
         scene = find_scene(cloud) if isinstance(cloud, str) else cloud
         refuse_large(width, height)  # before the clouds are made
-        _refuse_beside(
+        refuse_beside(
             "a scene's name, which brings its own",
             background=background,
             haze=haze,
@@ -184,7 +185,7 @@ def render(
     lit = None
     if isinstance(cloud, LitMetaballs):
         whose = "lit balls, which bring their own"
-        _refuse_beside(
+        refuse_beside(
             whose,
             suns=suns,
             medium=medium,
@@ -245,7 +246,8 @@ def render(
         )
         notes += idle_seed(seed)
     else:
-        assert isinstance(drawn, Metaballs) and rules is not None  # noqa: PT018
+        assert isinstance(drawn, Metaballs)
+        assert rules is not None
         picture = draw_layers(
             [Layer(drawn, medium, rules, haze, lit, scattering)],
             camera,
@@ -271,13 +273,6 @@ def as_drawn(
     if isinstance(cloud, VoxelGrid) and method == "splat":
         return voxel_balls(cloud)
     return cloud
-
-
-def _refuse_beside(what: str, **given: object) -> None:
-    """Refuse what a scene, or balls with their light, bring themselves."""
-    for name, value in given.items():
-        if value is not None:
-            raise ValueError(complaint(name, f"none beside {what}", "one"))
 
 
 def _refuse_idle(march: bool, **given: object) -> None:

@@ -36,7 +36,7 @@ POLICY = (
 )
 
 
-class Refused(Exception):  # noqa: N818
+class RefusedError(Exception):
     """A request that is not served: its status, and one line that says why."""
 
     def __init__(self, status: int, line: str) -> None:
@@ -93,15 +93,15 @@ class Handler(BaseHTTPRequestHandler):
         try:
             self._check_sender()
             if len(self.path) > MOST_QUERY:
-                raise Refused(414, complaint("query", "a short one", "a long one"))
+                raise RefusedError(414, complaint("query", "a short one", "a long one"))
             parts = urlsplit(self.path)
             if parts.path == "/":
                 self._send(200, "text/html; charset=utf-8", page(self.server).encode())
             elif parts.path == "/picture":
                 self._draw(parts.query)
             else:
-                raise Refused(404, complaint("path", "/ or /picture", "another"))
-        except Refused as refusal:
+                raise RefusedError(404, complaint("path", "/ or /picture", "another"))
+        except RefusedError as refusal:
             self._send(
                 refusal.status, "text/plain; charset=utf-8", f"{refusal}".encode()
             )
@@ -111,12 +111,16 @@ class Handler(BaseHTTPRequestHandler):
     def _check_sender(self) -> None:
         own = [f"{host}:{self.server.server_port}" for host in (LOOPBACK, "localhost")]
         if (self.headers.get_all("Host") or []) not in [[host] for host in own]:
-            raise Refused(403, complaint("Host", own[0], "another"))
+            raise RefusedError(403, complaint("Host", own[0], "another"))
         for origin in self.headers.get_all("Origin") or []:
             if origin not in [f"http://{host}" for host in own]:
-                raise Refused(403, complaint("Origin", f"http://{own[0]}", "another"))
+                raise RefusedError(
+                    403, complaint("Origin", f"http://{own[0]}", "another")
+                )
         if self.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin"):
-            raise Refused(403, complaint("Sec-Fetch-Site", "same-origin", "another"))
+            raise RefusedError(
+                403, complaint("Sec-Fetch-Site", "same-origin", "another")
+            )
 
     def _draw(self, query: str) -> None:
         knobs = {}

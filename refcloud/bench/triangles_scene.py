@@ -24,6 +24,7 @@ from refcloud.raster import (
     sphere_mesh,
 )
 from refcloud.raster.framebuffer import NOTHING
+from refcloud.raster.texture import MinFilter
 
 WIDTH, HEIGHT = 1024, 768
 SIDE, BLOCK = 512, 4  # texels
@@ -47,12 +48,12 @@ def scene(name: str, count: int) -> tuple[Mesh, Camera, Literal["BACK"] | None]:
 
 
 @functools.cache
-def textured(filter: str) -> Textured:
+def textured(filter: MinFilter) -> Textured:
     """Give the texture: random colours in blocks, on a checker."""
     j, i, c = np.ogrid[0:SIDE, 0:SIDE, 0:4]
     colours = uniform(j // BLOCK, i // BLOCK, c, seed=0)
     checker = (i // (8 * BLOCK) + j // (8 * BLOCK)) % 2
-    return Textured(Texture(0.7 * colours + 0.3 * checker, min_filter=filter))  # type: ignore[arg-type]
+    return Textured(Texture(0.7 * colours + 0.3 * checker, min_filter=filter))
 
 
 def state(depth: bool) -> State:

@@ -122,9 +122,9 @@ def clear(
     fbo.viewport = 0, 0, target.width, target.height
     fbo.scissor = target.box(*box)
     # moderngl clears colours and depths at once: a mask holds back what stays.
-    mask = state.color_mask if color is not None else (False,) * 4
+    mask = state.color_mask if color is not None else (False, False, False, False)
     writes = state.depth_mask and depth is not None
-    set_state(fbo, State(color_mask=mask, depth_mask=writes))  # type: ignore[arg-type]
+    set_state(fbo, State(color_mask=mask, depth_mask=writes))
     value = np.zeros(4) if color is None else nearest_float32(np.asarray(color))
     fbo.clear(*value.tolist(), depth=0.0 if depth is None else depth)
     fbo.scissor = None

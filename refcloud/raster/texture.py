@@ -32,7 +32,12 @@ Wrap = Literal["REPEAT", "MIRRORED_REPEAT", "CLAMP_TO_EDGE"]
 MOST_TEXELS = 16_000_000  # 4096 x 4096 or 256^3: half a gigabyte of float64 RGBA
 CODES = 255.0
 # Texels beyond an edge, as a border of one texel shows them.
-BORDER = {"REPEAT": "wrap", "MIRRORED_REPEAT": "symmetric", "CLAMP_TO_EDGE": "edge"}
+# By numpy's names, of which its stubs want to know each: hence Any.
+BORDER: dict[str, Any] = {
+    "REPEAT": "wrap",
+    "MIRRORED_REPEAT": "symmetric",
+    "CLAMP_TO_EDGE": "edge",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +132,7 @@ class Texture:
         for axis, wrap in zip((-2, -3, -4), self.wraps, strict=False):
             width = [(0, 0)] * level.ndim
             width[axis] = 1, 1
-            level = np.pad(level, width, BORDER[wrap])  # type: ignore[call-overload]
+            level = np.pad(level, width, BORDER[wrap])
         return np.ascontiguousarray(level, np.float64)
 
     @functools.cached_property

@@ -258,4 +258,5 @@ def _checked(where: str, option: Option, value: Any) -> Any:
         kinds = (*kinds, None)
     if isinstance(value, list) and not any(base_of(k) is Array for k in option.kinds):
         raise TypeError(complaint(where, "one value", f"{len(value)} values"))
+    # Of kinds that are known only here, `|` would need a loop.
     return check(where, value, Union[kinds])  # noqa: UP007

@@ -292,11 +292,12 @@ def test_only_a_few_frames_are_asked_for_ahead(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_memory_does_not_grow_with_the_frames(tmp_path: Path) -> None:
+    def collect(name: str, value: object) -> None:
+        gc.collect(1)  # what waits for the collector is not kept
+
     def peak(frames: int, name: str) -> int:
         size = {"frames": frames, "width": 96, "height": 72}
         tracemalloc.start()
-        # What waits for the collector is not kept.
-        collect = lambda name, value: gc.collect(1)  # noqa: E731
         animate(SEEN, tmp_path / name, moves=ROUND, observe=collect, **size)
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
