@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import importlib.util
+
 import numpy as np
 import pytest
 
+from refcloud import gl
 from refcloud.noise import uniform
 from refcloud.raster import line_pixels, triangle_pixels
 from refcloud.raster.diamonds import pixels_between
@@ -26,13 +29,13 @@ pytestmark = pytest.mark.gl
 
 @pytest.fixture(scope="module")
 def context():
-    moderngl = pytest.importorskip("moderngl")
+    """Give the one context of the process: another would leave it not current."""
+    if importlib.util.find_spec("moderngl") is None:
+        pytest.skip('needs moderngl: pip install -e ".[test,gl]"')
     try:
-        context = moderngl.create_context(standalone=True, backend="egl")
-    except Exception as reason:  # each driver has its own
-        pytest.skip(f"no OpenGL: {reason}")
-    yield context
-    context.release()
+        return gl.context()
+    except ValueError as missing:
+        pytest.skip(str(missing))
 
 
 def drawn(context, places: np.ndarray) -> np.ndarray:
