@@ -92,14 +92,9 @@ class Shader:
         if not importlib.util.find_spec("moderngl"):
             return None
         moderngl = importlib.import_module("moderngl")
-        context = None
-        for backend in ({"backend": "egl"}, {}):
-            try:
-                context = moderngl.create_context(standalone=True, **backend)
-                break
-            except Exception:  # each driver has its own way to be missing
-                continue
-        if context is None:
+        try:
+            context = importlib.import_module("refcloud.gl").context()
+        except ValueError:  # no OpenGL here
             return None
         program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
         reached = np.exp(-sigma_t * volume.density)
@@ -140,6 +135,7 @@ class Shader:
                 self.program[name].value = value
         target = self.context.simple_framebuffer(size, 4, dtype="f4")
         target.use()
+        self.context.enable_only(self.context.NOTHING)  # it serves others too
         self.quad.render(vertices=3)
         data = target.read(components=3, dtype="f4")
         target.release()
