@@ -77,14 +77,15 @@ class Shader:
     ----------
     name
         What the driver calls its renderer.
-    context, program, target, quad
-        Of moderngl.
+    context, program, quad, textures
+        Of moderngl; the context releases what nobody holds.
     """
 
     name: str
     context: Any
     program: Any
     quad: Any
+    textures: tuple[Any, ...]
 
     @staticmethod
     def here(grid: VoxelGrid, volume: LightVolume, sigma_t: float) -> Shader | None:
@@ -98,6 +99,7 @@ class Shader:
             return None
         program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
         reached = np.exp(-sigma_t * volume.density)
+        held = []
         for unit, (name, values) in enumerate(
             (("density", grid.density), ("reached", reached))
         ):
@@ -105,7 +107,7 @@ class Shader:
             texture = context.texture3d(values.shape[::-1], 1, data, dtype="f4")
             texture.repeat_x = texture.repeat_y = texture.repeat_z = False
             texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-            texture.use(unit)
+            held.append(texture)
             program[name].value = unit
         program["lower"].value = tuple(grid.lower)
         program["upper"].value = tuple(grid.upper)
@@ -113,7 +115,7 @@ class Shader:
         corners = np.array([-1, -1, 3, -1, -1, 3], np.float32)  # one large triangle
         quad = context.vertex_array(program, context.buffer(corners), "corner")
         name = context.info["GL_RENDERER"].split("(")[0].strip()
-        return Shader(name, context, program, quad)
+        return Shader(name, context, program, quad, tuple(held))
 
     def frame(self, camera: Camera, sun: Array, steps: int, sunward: int) -> Array:
         """Draw and read back a frame, (H, W, 3); sunward 0 reads the light volume."""
@@ -135,9 +137,10 @@ class Shader:
                 self.program[name].value = value
         target = self.context.simple_framebuffer(size, 4, dtype="f4")
         target.use()
+        for unit, texture in enumerate(self.textures):
+            texture.use(unit)
         self.context.enable_only(self.context.NOTHING)  # it serves others too
         self.quad.render(vertices=3)
         data = target.read(components=3, dtype="f4")
-        target.release()
         picture = np.frombuffer(data, np.float32).reshape(size[1], size[0], 3)
         return picture[::-1].astype(np.float64)
