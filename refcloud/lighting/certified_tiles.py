@@ -176,7 +176,8 @@ class _Work:
         """Draw all tiles that are left at their pixels."""
         left = np.flatnonzero(self.open)
         if len(left):
-            self._keep(left, *self.tiles.at(pixel_places(), self.least, left))
+            found = self.tiles.at(pixel_places(), self.least, left)
+            self._keep(left, found.light, found.clear, found.unseen)
             self.exact[left] = True
 
     def between_samples(self, most: float) -> None:

@@ -22,7 +22,7 @@ from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.seen import seen_by, shading_of
 from refcloud.lighting.shaded_tiles import shaded_tiles
 from refcloud.raster.canvas import Canvas
-from refcloud.raster.tile_lists import parts
+from refcloud.raster.tile_lists import PIXELS, parts
 
 # Shares of the tolerance: for balls left out as faint, and for those behind an opaque
 # front. Nodes need most of a tolerance that is large enough for them; float32 needs
@@ -115,7 +115,7 @@ def eyeward(
     least = max(share * tolerance / brightest, ROUNDED)
     most = (1.0 - FAINT - share) * tolerance
     canvas = Canvas(camera.width, camera.height, background)
-    hidden = entries = 0
+    hidden = looked = 0
     for lists in parts(flat.discs, camera.width, camera.height):
         if by_products:
             found, rows = certified_tiles(lists, flat, least, most, brightest, behind)
@@ -123,9 +123,9 @@ def eyeward(
         else:
             found = shaded_tiles(lists, seen, drawn, shading, least)
         canvas.paint(lists, flat.groups, found.light, found.clear)
-        hidden += int(found.unseen.sum())
-        entries += len(lists.ball)
+        hidden += PIXELS * int(found.unseen.sum()) + found.closed
+        looked += PIXELS * len(lists.ball)
     if hidden:
-        what = "balls of a tile behind opaque ones"
-        skipped.append(Skipped("eye", what, hidden, entries, least * brightest))
+        what = "pixels of balls' tiles behind opaque ones"
+        skipped.append(Skipped("eye", what, hidden, looked, least * brightest))
     return canvas.pixels(), tuple(skipped)

@@ -52,11 +52,14 @@ class Drawn(NamedTuple):
         Share of the background that passes, by group, shape (T, G, S).
     unseen
         List entries behind an opaque front, shape (T,).
+    closed
+        Pixels of other entries that are complete, each counted for every such entry.
     """
 
     light: Floats
     clear: Floats
     unseen: Whole
+    closed: int = 0
 
 
 def flat_balls(seen: Seen, drawn: Whole) -> Flat:

@@ -79,7 +79,7 @@ def shaded_tiles(
     count = len(lists.count)
     light = np.zeros((count, 3, PIXELS))
     clear = np.ones((count, len(groups), PIXELS))
-    unseen = np.zeros(count, np.intp)
+    unseen, closed = np.zeros(count, np.intp), 0
     ranked = np.argsort(-lists.count, kind="stable")  # lists of like length together
     for begin in range(0, count, TILES):
         batch = ranked[begin : begin + TILES]
@@ -91,6 +91,7 @@ def shaded_tiles(
             open_ = passed[:, : len(live) * PIXELS].max(axis=0) > least
             hidden = ~open_.reshape(-1, PIXELS).any(axis=1)
             unseen[live] += hidden
+            closed += int(np.count_nonzero(~open_)) - PIXELS * int(hidden.sum())
             ball = drawn[lists.ball[lists.first[live] + slot]]
             found = _samples(lists, live, ball, seen, shading, open_)
             if not len(found.at):
@@ -111,7 +112,7 @@ def shaded_tiles(
                     added[channel][at] += opacity * color[channel]
         light[batch] = added.reshape(3, -1, PIXELS).transpose(1, 0, 2)
         clear[batch] = passed.reshape(len(groups), -1, PIXELS).transpose(1, 0, 2)
-    return Drawn(light, clear, unseen)
+    return Drawn(light, clear, unseen, closed)
 
 
 def _samples(

@@ -177,3 +177,15 @@ def test_each_saving_is_counted_with_its_bound() -> None:
         assert 0 < row.skipped < row.of == double.of * 256
     assert nodes.skipped + second.skipped < nodes.of
     assert double.bound + nodes.bound + second.bound < 0.02
+
+
+def test_pixels_closed_one_by_one_are_told() -> None:
+    """Where no tile is hidden whole, its complete pixels still change the picture."""
+    balls = Metaballs([[0.0, 0.0, 0.0], [0.0, 0.0, -2.0]], [1.0, 1.0], [9.0, 9.0])
+    camera = Camera([0, 0, 9], [0, 0, 0], width=24, height=18)
+    lit = sunward(balls, SUNS, medium=MEDIUM, look="cumulus")
+    _, rows = eyeward(lit, camera, tolerance=0.1)
+    told = [row for row in rows if "behind opaque" in row.what]
+    assert len(told) == 1
+    assert 0 < told[0].skipped < told[0].of
+    assert 0.0 < told[0].bound <= 0.1

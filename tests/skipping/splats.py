@@ -149,7 +149,8 @@ def pixels_between_every_second_one() -> Found:
     return with_and_without("LEAST_RISE", "LEAST_NODES")
 
 
-@proof("eye", "balls of a tile behind opaque ones", rounding=1e-12)  # orders of drawing
+# Tiles draw in another order.
+@proof("eye", "pixels of balls' tiles behind opaque ones", rounding=1e-12)
 def balls_behind_opaque_ones() -> Found:
     small = scattered_balls(3, 40)
     balls = Metaballs(
