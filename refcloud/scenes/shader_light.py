@@ -35,7 +35,6 @@ from refcloud.scenes.shader_eyes import (
     observed,
     outlook,
     painted,
-    precision,
     refuse_unused,
     texels,
     timed,
@@ -134,12 +133,8 @@ def noise_of(
     how = {"time": view.time, "seed": of.seed, "octaves": of.octaves}
     cells = of.cells / of.base.tile
     if direct:
-        return lambda at: fbm(
-            cells * at, period=of.cells, dtype=precision(view), **how
-        ), ()
-    texture, rows = fractal_texture(
-        texels(view, of.size), cells=of.cells, dtype=precision(view), **how
-    )
+        return lambda at: fbm(cells * at, period=of.cells, **how), ()
+    texture, rows = fractal_texture(texels(view, of.size), cells=of.cells, **how)
     return lambda at: looked_up(texture, at / of.base.tile), rows
 
 

@@ -36,7 +36,6 @@ from refcloud.scenes.shader_eyes import (
     SUN,
     observed,
     painted,
-    precision,
     refuse_unused,
     timed,
 )
@@ -116,7 +115,7 @@ def ball_of_noise(
     found: Places, kind: KindName, solid: bool, view: View, suns, of: NoiseBalls
 ) -> Array:
     """Draw a ball of one kind of noise, solid or with a picture wrapped around it."""
-    how = {"kind": kind, "seed": of.seed, "octaves": 1, "dtype": precision(view)}
+    how = {"kind": kind, "seed": of.seed, "octaves": 1}
 
     def shade(at: Places) -> tuple[Array, Array]:
         if solid:
@@ -146,8 +145,7 @@ def puff(model: Model, view: View, *, of: LitPuff = SMOKE) -> Picture:
         x: Array = pixel * (np.arange(width, dtype=np.float64) + 0.5 - 0.5 * width)
         y: Array = pixel * (0.5 * height - np.arange(height, dtype=np.float64) - 0.5)
         at = np.stack(np.meshgrid(x, y), axis=-1)
-        how = {"time": view.time, "dtype": precision(view)}
-        density = puff_density(at, of.puff, **how)
+        density = puff_density(at, of.puff, time=view.time)
 
         observed(view, "density", density)
 
@@ -211,7 +209,6 @@ def bubble(model: Model, view: View, *, of: Bubble = BUBBLE) -> Picture:
             seed=of.seed,
             octaves=of.octaves,
             period=of.period,
-            dtype=precision(view),
         )
         white, share = cloud_cover(noise, of.cover)
         color = share[:, None] * white[:, None] + (1.0 - share[:, None]) * of.color
