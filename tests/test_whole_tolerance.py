@@ -134,7 +134,7 @@ def test_light_of_every_order_stays_within_the_tolerance(data) -> None:
     many_times_off(data)
 
 
-def test_the_table_tells_who_vouches_and_the_figure_shows_both(tmp_path) -> None:
+def test_the_table_tells_who_vouches() -> None:
     rows = timed(scenes_at(16, ASKED, PARTS), rounds=1)
     assert len(rows) == len(PARTS) * (len(ASKED) + 1)
     by_name = {(row.task, row.name): row for row in rows}
@@ -149,7 +149,12 @@ def test_the_table_tells_who_vouches_and_the_figure_shows_both(tmp_path) -> None
     proved, certified, measured = text[2].split()[-3:]
     assert text[2].startswith("demand-quad")
     assert (float(proved), certified, float(measured)) == (0.09, "-", 0.01)
+
+
+@pytest.mark.slow  # the stage that has matplotlib
+def test_the_figure_shows_what_was_asked_and_what_came_out(tmp_path) -> None:
     pytest.importorskip("matplotlib", reason="needs matplotlib (extra: bench)")
+    rows = timed(scenes_at(16, ASKED, PARTS), rounds=1)
     picture = load_picture(asked_figure(rows, tmp_path / "tolerance.png")).linear
     assert picture.shape == (360 + 26, 640, 3)  # two lines of the legend
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 10

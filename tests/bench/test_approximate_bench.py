@@ -57,6 +57,7 @@ def test_balls_below_0_are_taken_away_and_the_rim_counts() -> None:
     assert outside > inside
 
 
+@pytest.mark.slow  # the stage that has matplotlib
 def test_a_figure_has_a_line_for_each_contender(tmp_path) -> None:
     pytest.importorskip("matplotlib", reason="needs matplotlib (extra: bench)")
     rows = [
