@@ -13,8 +13,14 @@ import functools
 
 import numpy as np
 
-from refcloud.conventions import Skipped
-from refcloud.lighting.flat_tiles import Drawn, Flat, FlatTiles, exact_tiles
+from refcloud.conventions import Array, Skipped
+from refcloud.lighting.flat_tiles import (
+    Drawn,
+    Flat,
+    FlatTiles,
+    exact_tiles,
+    one_ball_a_pair,
+)
 from refcloud.noise import uniform
 from refcloud.raster import between
 from refcloud.raster.between import Samples, quarters, sampled
@@ -34,6 +40,7 @@ OF_NODES = 1.0 / 8.0  # of what fewer places may change: tiles beside take some 
 LEAST_NODES, GUESS = 4.0 * LEAST_RISE, 0.15
 FEW = 10  # balls of a tile, to which filling it up costs more than drawing its pixels
 SAMPLE_TILES, SAMPLE_PIXELS = 32, 16  # 512 pixels are compared with the exact method
+TABLE = 256  # rows and columns of tiles after which the choice repeats itself
 SAMPLE_LEAST = 0.01  # what the sample itself may leave out behind an opaque front
 # The largest error of a picture over the largest of its sample: of float32, whose
 # errors are sums of many roundings; and between places, where they sit at a few rims.
@@ -190,28 +197,43 @@ class _Work:
         self.samples.put(
             self.lists, others, light[others][..., at], clear[others][..., at]
         )
-        error = np.empty((2, 2, len(self.sparse)), np.float32)
+        rough: list[tuple[Whole, Whole]] = []
         for begin in range(0, len(self.sparse), between.TOGETHER):
-            here = slice(begin, begin + between.TOGETHER)
-            some = self.sparse[here]
-            pixels, fourth = self.samples.between(self.lists, some)
+            some = self.sparse[begin : begin + between.TOGETHER]
+            around = self.samples.around(self.lists, some)
+            pixels = between.halfway(around)
             for channel in range(3):
                 light[some, channel] = pixels[channel]
             for group in range(clear.shape[1]):
                 clear[some, group] = pixels[3 + group]
-            error[..., here] = self._of_picture(*fourth)
-        error *= between.PER_FOURTH
+            rough += self._rough_quarters(some, around, most)
         self.saved_by_samples = len(self.sparse) * (PIXELS - len(at))
         parts = quarters()
-        row, column, again = np.nonzero(error > most)
-        if len(again):
-            tile, part = self.sparse[again], 2 * row + column
+        if rough:
+            tile, part = (np.concatenate(each) for each in zip(*rough, strict=True))
             moved = parts.moved[0][part], parts.moved[1][part]
             found = self.tiles.at(parts.places, self.least, tile, moved)
             at, tile = parts.pixels[part][:, None], tile[:, None, None]
             light[tile, np.arange(3)[:, None], at] = found.light
             clear[tile, np.arange(clear.shape[1])[:, None], at] = found.clear
             self.saved_by_samples -= found.clear[:, 0].size
+
+    def _rough_quarters(
+        self, some: Whole, around: Floats, most: float
+    ) -> list[tuple[Whole, Whole]]:
+        """List tiles and quarters of theirs whose samples may be too few."""
+        fourth = between.fourth_differences(around)
+        # Most tiles are smooth everywhere: only of the others quarters are looked at.
+        error = self._of_picture(*self.samples.either(between.largest_of_tiles(fourth)))
+        rough = np.flatnonzero(error * between.PER_FOURTH > most)
+        if not len(rough):
+            return []
+        down, across = (self.samples.either(each[:, rough]) for each in fourth)
+        error = self._of_picture(
+            *map(between.largest_of_quarters, zip(down, across, strict=True))
+        )
+        row, column, tile = np.nonzero(error * between.PER_FOURTH > most)
+        return [(some[rough[tile]], 2 * row + column)]
 
     def _keep(self, which: Whole, light: Floats, clear: Floats, unseen: Whole) -> None:
         """Take pixels of some tiles into the picture."""
@@ -235,11 +257,12 @@ class _Work:
         -------
         The largest error where all pixels were drawn, and where fewer places were.
         """
-        keys = uniform(self.lists.row, self.lists.column, seed=0)
+        keys = _hashed_tiles()[self.lists.row % TABLE, self.lists.column % TABLE]
         some = np.sort(np.argsort(keys, kind="stable")[:SAMPLE_TILES])
         at = _hashed_pixels()
         x, y = pixel_places()
-        exact = FlatTiles(self.lists.chosen(some), flat).at((x[at], y[at]), least)
+        lists, theirs = one_ball_a_pair(self.lists.chosen(some), flat)
+        exact = FlatTiles(lists, theirs).at((x[at], y[at]), least)
         error = self._of_picture(
             np.abs(exact.light - self.drawn.light[some][..., at]).max(axis=(1, 2)),
             np.abs(exact.clear - self.drawn.clear[some][..., at]).max(axis=(1, 2)),
@@ -249,6 +272,13 @@ class _Work:
             float(error[whole].max(initial=0.0)),
             float(error[~whole].max(initial=0.0)),
         )
+
+
+@functools.cache
+def _hashed_tiles() -> Array:
+    """Give keys whose order chooses the tiles that are compared, by row and column."""
+    row, column = np.indices((TABLE, TABLE))
+    return uniform(row, column, seed=0)
 
 
 @functools.cache

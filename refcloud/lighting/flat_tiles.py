@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -66,12 +67,28 @@ def flat_balls(seen: Seen, drawn: Whole) -> Flat:
     """Collect what tiles need of the balls that are drawn, near to far."""
     groups = seen.channel_groups()
     return Flat(
-        Discs(seen.x[drawn], seen.y[drawn], seen.radius[drawn]),
-        [seen.tau[channels[0]][drawn] for channels in groups],
-        seen.flat_colours()[drawn],
+        Discs(seen.x.take(drawn), seen.y.take(drawn), seen.radius.take(drawn)),
+        [seen.tau[channels[0]].take(drawn) for channels in groups],
+        seen.flat_colours().take(drawn, axis=0),
         groups,
         seen.lit.look,
     )
+
+
+def one_ball_a_pair(lists: TileLists, flat: Flat) -> tuple[TileLists, Flat]:
+    """Give a few tiles' lists and their balls alone, one for each pair.
+
+    What is computed for each ball then costs as much as these tiles have pairs, however
+    many balls the picture has.
+    """
+    ball, discs = lists.ball, flat.discs
+    theirs = dataclasses.replace(
+        flat,
+        discs=Discs(discs.x.take(ball), discs.y.take(ball), discs.radius.take(ball)),
+        tau=[tau.take(ball) for tau in flat.tau],
+        colours=flat.colours.take(ball, axis=0),
+    )
+    return dataclasses.replace(lists, ball=np.arange(len(ball))), theirs
 
 
 class FlatTiles:
