@@ -17,7 +17,7 @@ from refcloud import march, transport
 from refcloud.conventions import Range
 
 lesson = Lesson()
-CLOUD = rc.generate(seed=12, voxel=6.0 if lesson.quick else 2.0)
+CLOUD = rc.generate(seed=12, voxel=8.0 if lesson.quick else 2.0)
 
 
 def picture(
