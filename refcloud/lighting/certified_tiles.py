@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.conventions import Array, Skipped
 from refcloud.lighting.flat_tiles import (
@@ -25,7 +26,7 @@ from refcloud.noise import uniform
 from refcloud.raster import between
 from refcloud.raster.between import Samples, quarters, sampled
 from refcloud.raster.nodes import LEAST_RISE, nodes
-from refcloud.raster.quadratics import Floats, cancelling
+from refcloud.raster.quadratics import Floats
 from refcloud.raster.tile_lists import PIXELS, TileLists, Whole
 from refcloud.raster.tiles import pixel_places
 
@@ -75,9 +76,13 @@ def certified_tiles(
     share = most if most < 2.0 * MOST_FLOAT32 else MOST_FLOAT32
     # What rounding may change of one ball's opacity at the worst; the sample tells.
     digits = 4.0 * share / brightest
-    if most < 0.4 * LEAST_FLOAT32 or not _fits(flat, digits):
+    if most < 0.4 * LEAST_FLOAT32:
         return exact_tiles(lists, flat, least), []
-    work = _Work(lists, flat, digits, least, behind)
+    direct = flat.cancelling(np.float32, digits)
+    # It pays where most balls' opacities keep enough digits.
+    if any(2 * np.count_nonzero(balls) > len(balls) for balls in direct):
+        return exact_tiles(lists, flat, least), []
+    work = _Work(lists, flat, direct, least, behind)
     room = most - share  # for fewer places than pixels
     used = 0.0
     if room > 0.0:
@@ -116,20 +121,20 @@ class _Work:
     ----------
     lists, flat, least, behind
         As `certified_tiles`.
-    digits
-        What rounding may change of a ball's opacity.
+    direct
+        Balls to which float32 would be too rough, by group of channels.
     """
 
     def __init__(
         self,
         lists: TileLists,
         flat: Flat,
-        digits: float,
+        direct: list[NDArray[np.bool_]],
         least: float,
         behind: float,
     ) -> None:
         self.lists, self.least, self.behind = lists, least, behind
-        self.tiles = FlatTiles(lists, flat, np.float32, digits)
+        self.tiles = FlatTiles(lists, flat, np.float32, direct)
         count, groups = len(lists.count), len(flat.groups)
         self.drawn = Drawn(
             np.empty((count, 3, PIXELS), np.float32),
@@ -189,14 +194,12 @@ class _Work:
 
     def between_samples(self, most: float) -> None:
         """Fill tiles up from their samples, or draw quarters that have too few."""
-        at = sampled()[0]
         light, clear = self.drawn.light, self.drawn.clear
         others = np.ones(len(light), dtype=bool)
         others[self.sparse] = False
         others = np.flatnonzero(others)
-        self.samples.put(
-            self.lists, others, light[others][..., at], clear[others][..., at]
-        )
+        known = (between.samples_among(pixels)[others] for pixels in (light, clear))
+        self.samples.put(self.lists, others, *known)
         rough: list[tuple[Whole, Whole]] = []
         for begin in range(0, len(self.sparse), between.TOGETHER):
             some = self.sparse[begin : begin + between.TOGETHER]
@@ -207,7 +210,7 @@ class _Work:
             for group in range(clear.shape[1]):
                 clear[some, group] = pixels[3 + group]
             rough += self._rough_quarters(some, around, most)
-        self.saved_by_samples = len(self.sparse) * (PIXELS - len(at))
+        self.saved_by_samples = len(self.sparse) * (PIXELS - between.SAMPLES**2)
         parts = quarters()
         if rough:
             tile, part = (np.concatenate(each) for each in zip(*rough, strict=True))
@@ -286,13 +289,3 @@ def _hashed_pixels() -> Whole:
     """Choose the pixels of a tile that are compared."""
     order = np.argsort(uniform(np.arange(PIXELS), seed=1), kind="stable")
     return order[:SAMPLE_PIXELS]
-
-
-def _fits(flat: Flat, most: float) -> bool:
-    """Tell whether float32 pays: where most balls' opacities keep enough digits."""
-    law = flat.look.transmittance
-    return all(
-        np.count_nonzero(cancelling(flat.discs, tau, law, most=most, dtype=np.float32))
-        <= 0.5 * len(tau)
-        for tau in flat.tau
-    )

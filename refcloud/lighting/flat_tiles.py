@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.lighting.look import Look
@@ -40,6 +41,13 @@ class Flat:
     colours: Array
     groups: Sequence[Sequence[int]]
     look: Look
+
+    def cancelling(self, dtype: type, most: float) -> list[NDArray[np.bool_]]:
+        """Tell by group which balls' opacities rounding would change by too much."""
+        law = self.look.transmittance
+        return [
+            cancelling(self.discs, tau, law, most=most, dtype=dtype) for tau in self.tau
+        ]
 
 
 class Drawn(NamedTuple):
@@ -100,8 +108,9 @@ class FlatTiles:
         The tiles' lists and the balls.
     dtype
         As `Compositor`.
-    most
-        Of a ball's opacity: what rounding may change.
+    direct
+        By group of channels, the balls whose places are measured one by one, as
+        `cancelling` tells them; None for those of float64.
     """
 
     def __init__(
@@ -109,10 +118,10 @@ class FlatTiles:
         lists: TileLists,
         flat: Flat,
         dtype: type = np.float64,
-        most: float = EXACT,
+        direct: Sequence[NDArray[np.bool_]] | None = None,
     ) -> None:
         self.lists, self.groups, self.dtype = lists, flat.groups, dtype
-        law = flat.look.transmittance
+        measured = flat.cancelling(dtype, EXACT) if direct is None else direct
         self.compositors = [
             Compositor(
                 lists,
@@ -120,11 +129,13 @@ class FlatTiles:
                 tau,
                 flat.colours[:, channels],
                 name=flat.look.footprint,
-                law=law,
+                law=flat.look.transmittance,
                 dtype=dtype,
-                direct=cancelling(flat.discs, tau, law, most=most, dtype=dtype),
+                direct=balls,
             )
-            for tau, channels in zip(flat.tau, flat.groups, strict=True)
+            for tau, channels, balls in zip(
+                flat.tau, flat.groups, measured, strict=True
+            )
         ]
 
     def at(

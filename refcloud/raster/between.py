@@ -84,6 +84,12 @@ def sampled() -> tuple[Whole, tuple[Array, Array]]:
     return pixels, (x[pixels], y[pixels])
 
 
+def samples_among(pixels: Floats) -> Floats:
+    """View those pixels of tiles that are samples, (..., 256) to (..., 8, 8)."""
+    parted = pixels.reshape(*pixels.shape[:-1], SAMPLES, STEP, SAMPLES, STEP)
+    return parted[..., 0, :, 0]
+
+
 class Quarters(NamedTuple):
     """The quarters of a tile, row after row, to be drawn where it is not smooth.
 
@@ -149,7 +155,7 @@ class Samples:
         self.windows = sliding_window_view(self.plane, (AROUND, AROUND), axis=(1, 2))
 
     def put(self, lists: TileLists, which: Whole, *values: Floats) -> None:
-        """Write samples of some tiles: light and clear, (T, C, 64) each."""
+        """Write samples of some tiles: light and clear, (T, C, 64) or (T, C, 8, 8)."""
         where = lists.row[which] - self.box[2], lists.column[which] - self.box[0]
         channel = 0
         for part in values:
