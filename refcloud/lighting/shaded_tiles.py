@@ -22,7 +22,7 @@ from refcloud.lighting.shading import FRONT, Shading, noise_at
 from refcloud.raster.footprint import footprint_of
 from refcloud.raster.tile_lists import PIXELS, SIDE, TileLists, Whole
 
-TILES = 64  # worked on together: their samples stay in the processor's cache
+TILES = 256  # worked on together: calls are long, and samples stay near the processor
 
 
 class Samples(NamedTuple):
