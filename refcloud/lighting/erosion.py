@@ -8,14 +8,17 @@ grows, so that no light is made.
 from __future__ import annotations
 
 import dataclasses
-from typing import Annotated
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Positive, Range, Seed, Shape
 from refcloud.noise import octave_sum_grid
+
+Numbers = TypeVar("Numbers", bound=NDArray[np.floating[Any]])
 
 OCTAVES = 4
 PERSISTENCE = 0.6
@@ -179,7 +182,7 @@ def lit_share(
     return lit_share_of(noise, ahead, relief)
 
 
-def lit_share_of(noise: Array, ahead: Array, relief: float) -> Array:
+def lit_share_of(noise: Numbers, ahead: Numbers, relief: float) -> Numbers:
     """Give the share without a check: the inner form of `lit_share`.
 
     Parameters
@@ -191,7 +194,7 @@ def lit_share_of(noise: Array, ahead: Array, relief: float) -> Array:
     -------
     As `lit_share`, a new array.
     """
-    share = ahead - noise
+    share: Any = ahead - noise
     share += 1.0
     share *= -0.5 * relief
     share += 1.0

@@ -17,10 +17,11 @@ from refcloud.lighting.certified_tiles import certified_tiles
 from refcloud.lighting.colours import Haze
 from refcloud.lighting.ends import refuse_extreme
 from refcloud.lighting.flat_tiles import flat_balls
+from refcloud.lighting.fronts import fill, half_width, hull_of
 from refcloud.lighting.hidden import without_faint
 from refcloud.lighting.lit import LitMetaballs
+from refcloud.lighting.proved_tiles import ProvedTiles, digits_of
 from refcloud.lighting.seen import seen_by, shading_of
-from refcloud.lighting.shaded_tiles import shaded_tiles
 from refcloud.raster.canvas import Canvas
 from refcloud.raster.tile_lists import PIXELS, parts
 
@@ -86,6 +87,7 @@ def eyeward(
     # 1. What the eye sees of every ball; leave out what cannot show.
     seen, skipped = seen_by(lit, camera, haze)
     # Alpha counts as a channel: what may change is 1 at least.
+    over = background is not None
     behind = 0.0 if background is None else float(background.max(initial=0.0))
     brightest = max(1.0, seen.brightest(), behind)
     visible, rows = without_faint(
@@ -109,23 +111,32 @@ def eyeward(
     # 3. Draw tile after tile, each from the front, before the background.
     # Behind pixels that let no more than this through, all together changes less than
     # that share of the tolerance: it is between 0 and the brightest, seen through them.
-    share = 1.0 - FAINT
+    share, digits, width = 1.0 - FAINT, 0.0, brightest
+    low, high = hull_of(seen, background)
     if by_products:
         share = OPAQUE_OF_NODES if tolerance >= NODES_FROM else OPAQUE
-    least = max(share * tolerance / brightest, ROUNDED)
+    elif tolerance > 0.0:
+        digits = digits_of(seen, drawn, brightest, tolerance)
+        share -= digits / tolerance
+        width = max(half_width(low, high, over), share * tolerance)
+    least = max(share * tolerance / width, ROUNDED)
     most = (1.0 - FAINT - share) * tolerance
     canvas = Canvas(camera.width, camera.height, background)
+    shaded = ProvedTiles(seen, drawn, shading, digits, brightest)
     hidden = looked = 0
     for lists in parts(flat.discs, camera.width, camera.height):
         if by_products:
             found, rows = certified_tiles(lists, flat, least, most, brightest, behind)
             skipped += rows
         else:
-            found = shaded_tiles(lists, seen, drawn, shading, least)
+            found = shaded.draw(lists, least)
+            if tolerance > 0.0:
+                fill(found, flat.groups, least, low, high, over)
         canvas.paint(lists, flat.groups, found.light, found.clear)
         hidden += PIXELS * int(found.unseen.sum()) + found.closed
         looked += PIXELS * len(lists.ball)
+    skipped += shaded.rows()
     if hidden:
         what = "pixels of balls' tiles behind opaque ones"
-        skipped.append(Skipped("eye", what, hidden, looked, least * brightest))
+        skipped.append(Skipped("eye", what, hidden, looked, least * width))
     return canvas.pixels(), tuple(skipped)

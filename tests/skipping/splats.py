@@ -12,6 +12,7 @@ from twins.lighting import scattered_balls
 from refcloud.camera import Camera
 from refcloud.compose import Layer, draw_layers
 from refcloud.lighting import LitMetaballs, ball_colours, eyeward, sunward
+from refcloud.lighting.exact_places import ExactPlaces
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Sun
 from skipping import Found, proof, replaced
@@ -147,6 +148,15 @@ def pixels_between_nodes() -> Found:
 @proof("eye", "pixels between every second one")
 def pixels_between_every_second_one() -> Found:
     return with_and_without("LEAST_RISE", "LEAST_NODES")
+
+
+@proof("eye", "tiles of shaded balls in double precision")
+def shaded_tiles_in_double_precision() -> Found:
+    lit = sunward(scattered_balls(2, 60), SUNS, **HOW)
+    found, rows = seen(lit, WIDE, 0.01)
+    with replaced("refcloud.lighting.proved_tiles", SinglePlaces=ExactPlaces):
+        whole, _ = seen(lit, WIDE, 0.01)
+    return Found(found, whole, rows)
 
 
 # Tiles draw in another order.
