@@ -99,18 +99,15 @@ def eyeward(
     )
     skipped += rows
 
-    # 2. Light as a field, and the noise that erodes footprints.
-    shading, tables = shading_of(seen, seed, watch)
-    skipped += tables
     drawn = seen.order[visible[seen.order]]
     watch("eye order", drawn)
-    smooth = shading.field is None and shading.detail is None
-    flat = flat_balls(seen, drawn)
+    flat, look = flat_balls(seen, drawn), lit.look
+    smooth = not (look.light_reach > 0.0 or look.erosion > 0.0)
     by_products = smooth and lit.balls.kernel == "wyvill"
 
-    # 3. Draw tile after tile, each from the front, before the background.
-    # Behind pixels that let no more than this through, all together changes less than
-    # that share of the tolerance: it is between 0 and the brightest, seen through them.
+    # 2. What the tolerance goes to. Behind pixels that let no more than `least` pass,
+    # all together changes less than that share: it is between 0 and the brightest, or
+    # off the middle of what it can be by less, seen through them.
     share, digits, width = 1.0 - FAINT, 0.0, brightest
     low, high = hull_of(seen, background)
     if by_products:
@@ -121,8 +118,21 @@ def eyeward(
         width = max(half_width(low, high, over), share * tolerance)
     least = max(share * tolerance / width, ROUNDED)
     most = (1.0 - FAINT - share) * tolerance
+
+    # 3. Light as a field, and the noise that erodes footprints.
+    shading, rows = shading_of(seen, seed, observe, single=digits > 0.0)
+    skipped += rows
+
+    # 4. Draw tile after tile, each from the front, before the background.
     canvas = Canvas(camera.width, camera.height, background)
-    shaded = ProvedTiles(seen, drawn, shading, digits, brightest)
+    shaded = ProvedTiles(
+        seen,
+        drawn,
+        shading,
+        lambda: shading_of(seen, seed, None)[0],
+        digits,
+        brightest,
+    )
     hidden = looked = 0
     for lists in parts(flat.discs, camera.width, camera.height):
         if by_products:

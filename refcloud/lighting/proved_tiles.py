@@ -7,6 +7,9 @@ balls of extreme depth, tiles are drawn again in double precision.
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
+
 from refcloud.conventions import Skipped
 from refcloud.lighting.exact_places import ExactPlaces
 from refcloud.lighting.flat_tiles import Drawn
@@ -58,7 +61,9 @@ class ProvedTiles:
     seen, drawn
         The balls, and those that are drawn, near to far.
     shading
-        What all balls share.
+        What all balls share, with noise in single precision where `digits` is not 0.
+    again
+        Gives the same in double precision, where single precision was not enough.
     digits
         What single precision may change; 0 for double precision.
     brightest
@@ -70,12 +75,17 @@ class ProvedTiles:
         seen: Seen,
         drawn: Whole,
         shading: Shading,
+        again: Callable[[], Shading],
         digits: float,
         brightest: float,
     ) -> None:
-        self.seen, self.drawn, self.shading = seen, drawn, shading
+        self.seen, self.drawn = seen, drawn
         self.digits, self.brightest = digits, brightest
         self.single = SinglePlaces(seen, shading) if digits > 0.0 else None
+        given = functools.partial(ExactPlaces, seen)
+        self.exact = functools.cache(
+            (lambda: given(again())) if digits > 0.0 else (lambda: given(shading))
+        )
         self.count = self.saved = 0
         self.bound = 0.0
 
@@ -90,8 +100,7 @@ class ProvedTiles:
                 self.saved += len(lists.count)
                 self.bound = max(self.bound, bound)
                 return found
-        places = ExactPlaces(self.seen, self.shading)
-        return shaded_tiles(lists, self.drawn, groups, places, least)
+        return shaded_tiles(lists, self.drawn, groups, self.exact(), least)
 
     def rows(self) -> list[Skipped]:
         """Tell what was saved."""

@@ -29,7 +29,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from refcloud.cloudmap import cell_size
 from refcloud.conventions import Array
 from refcloud.lighting.erosion import SOFT, lit_share_of
 from refcloud.lighting.exact_places import covered
@@ -72,7 +71,7 @@ class SinglePlaces:
     def __init__(self, seen: Seen, shading: Shading) -> None:
         self.seen, self.look = seen, shading.look
         self.beer = self.look.transmittance != "linear"
-        balls, field, detail = seen.lit.balls, shading.field, shading.detail
+        balls, field, detail = seen.lit.balls, shading.field, shading.single
         # 1. What a ball hides, and what rounding may change of it.
         erosion = self.look.erosion if detail is not None else 0.0
         self.slack = np.float32(((NOISE + 0.5) * erosion + 3.0) * ROUNDING)
@@ -89,9 +88,9 @@ class SinglePlaces:
         # 2. Balls' places in cells of the noise, or in nodes of the light.
         self.detail = self.field = None
         if detail is not None:
-            cell = cell_size(detail)
+            cell = np.full(3, detail.spacing)
             first = detail.lower + 0.5 * cell
-            self.detail = Table(detail.density.astype(np.float32))
+            self.detail = Table(detail.values)
         elif field is not None:
             cell, first = np.full(3, field.spacing), field.lower
         else:

@@ -18,6 +18,7 @@ from refcloud.lighting.flat_tiles import Drawn, flat_balls
 from refcloud.lighting.fronts import fill, half_width, hull_of
 from refcloud.lighting.seen import seen_by, shading_of
 from refcloud.lighting.shaded_tiles import shaded_tiles
+from refcloud.lighting.shading import FRONT
 from refcloud.lighting.single_places import (
     COLOR,
     ROUNDING,
@@ -52,13 +53,13 @@ def both(
 ) -> tuple[Drawn, Drawn, float]:
     """Draw in double and in single precision; give the brightest colour too."""
     seen, _ = seen_by(lit, WIDE, haze)
-    shading, _ = shading_of(seen, 0, lambda name, value: None)
+    tables = [shading_of(seen, 0, None, single=single)[0] for single in (False, True)]
     drawn = seen.order[seen.shown[seen.order]]
     flat = flat_balls(seen, drawn)
     (lists,) = parts(flat.discs, WIDE.width, WIDE.height)
     exact, single = (
         shaded_tiles(lists, drawn, flat.groups, kind(seen, shading), least)
-        for kind in (ExactPlaces, SinglePlaces)
+        for kind, shading in zip((ExactPlaces, SinglePlaces), tables, strict=True)
     )
     return exact, single, max(1.0, seen.brightest())
 
@@ -142,3 +143,40 @@ def test_an_empty_cloud_has_a_hull(look: Look) -> None:
     low, high = hull_of(seen, None)
     assert not low.any()
     assert not high.any()
+
+
+@settings(max_examples=25)
+@given(seeds, st.integers(1, 12), suns_of(2), st.floats(-1.0, 1.0))
+def test_the_table_is_made_wherever_a_ball_looks(seed, count, suns, size) -> None:
+    """Cubes of the box that are left out hold 0: a look there would show."""
+    balls = scattered_balls(seed, count)
+    balls = dataclasses.replace(balls, radii=10.0 ** (0.3 * size) * balls.radii)
+    lit = sunward(balls, suns, medium=MEDIUM, look=EXTENDED)
+    seen, _ = seen_by(lit, WIDE, None)
+    if not seen.shown.any():
+        return
+    exact, rows = shading_of(seen, seed, None)
+    single, same = shading_of(seen, seed, None, single=True)
+    assert exact.detail is not None
+    assert single.single is not None
+    assert rows == same
+    values = single.single.values
+    np.testing.assert_array_equal(single.single.lower, exact.detail.lower)
+    assert values.shape == exact.detail.density.shape
+    made = values != 0.0
+    off = np.abs(values - exact.detail.density)[made]
+    assert off.max() <= 0.5 * ROUNDING + 1e-12, "the same noise, rounded once"
+    # Places of pixels, and a step toward each sun: all cells around them are made.
+    angle = np.linspace(0.0, 2.0 * np.pi, 24)[:, None]
+    q = np.linspace(0.0, 1.0, 9)
+    right, up = np.sqrt(q) * np.cos(angle), np.sqrt(q) * np.sin(angle)
+    back = np.broadcast_to(FRONT * np.sqrt(1.0 - q), right.shape)
+    ways = np.stack([right, up, back], axis=-1).reshape(-1, 3) @ exact.frame
+    for k in np.flatnonzero(seen.shown):
+        for step in (np.zeros(3), *exact.toward):
+            places = balls.centers[k] + balls.radii[k] * ways + step
+            cells = (places - single.single.lower) / single.single.spacing - 0.5
+            first = np.maximum(np.floor(cells), 0).astype(int)
+            for more in np.ndindex(2, 2, 2):
+                i, j, m = np.minimum(first + more, np.array(values.shape[::-1]) - 1).T
+                assert (made[m, j, i] | (exact.detail.density[m, j, i] < 1e-9)).all()
