@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
+import numpy as np
+
 from refcloud.camera import AnyCamera
 from refcloud.checking import checked
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
@@ -109,11 +111,12 @@ def eyeward(
     # all together changes less than that share: it is between 0 and the brightest, or
     # off the middle of what it can be by less, seen through them.
     share, digits, width = 1.0 - FAINT, 0.0, brightest
-    low, high = hull_of(seen, background)
+    low = high = np.zeros(3)
     if by_products:
         share = OPAQUE_OF_NODES if tolerance >= NODES_FROM else OPAQUE
     elif tolerance > 0.0:
         digits = digits_of(seen, drawn, brightest, tolerance)
+        low, high = hull_of(seen, background)
         share -= SHARE  # whatever comes of it: rows of several clouds add up
         width = max(half_width(low, high, over), share * tolerance)
     least = max(share * tolerance / width, ROUNDED)
