@@ -102,7 +102,6 @@ def eyeward(
     skipped += rows
 
     drawn = seen.order[visible[seen.order]]
-    watch("eye order", drawn)
     flat, look = flat_balls(seen, drawn), lit.look
     smooth = not (look.light_reach > 0.0 or look.erosion > 0.0)
     by_products = smooth and lit.balls.kernel == "wyvill"
@@ -125,6 +124,7 @@ def eyeward(
     # 3. Light as a field, and the noise that erodes footprints.
     shading, rows = shading_of(seen, seed, observe, single=digits > 0.0)
     skipped += rows
+    watch("eye order", drawn)
 
     # 4. Draw tile after tile, each from the front, before the background.
     canvas = Canvas(camera.width, camera.height, background)
