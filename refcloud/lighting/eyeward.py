@@ -22,7 +22,7 @@ from refcloud.lighting.flat_tiles import flat_balls
 from refcloud.lighting.fronts import fill, half_width, hull_of
 from refcloud.lighting.hidden import without_faint
 from refcloud.lighting.lit import LitMetaballs
-from refcloud.lighting.proved_tiles import SHARE, ProvedTiles, digits_of
+from refcloud.lighting.proved_tiles import DIGITS, ProvedTiles, digits_of
 from refcloud.lighting.seen import seen_by, shading_of
 from refcloud.raster.canvas import Canvas
 from refcloud.raster.tile_lists import PIXELS, parts
@@ -116,7 +116,7 @@ def eyeward(
     elif tolerance > 0.0:
         digits = digits_of(seen, drawn, brightest, tolerance)
         low, high = hull_of(seen, background)
-        share -= SHARE  # whatever comes of it: rows of several clouds add up
+        share -= DIGITS  # whatever comes of it: rows of several clouds add up
         width = max(half_width(low, high, over), share * tolerance)
     least = max(share * tolerance / width, ROUNDED)
     most = (1.0 - FAINT - share) * tolerance

@@ -27,7 +27,7 @@ from refcloud.raster.tile_lists import TileLists, Whole
 # Balls as deep as the deepest that a pixel sees through their rims, one behind the
 # other: a guess, of the clouds of the scenes. A wrong one costs time alone.
 RIMS = 4.0
-SHARE = 1.0 / 8.0  # of a tolerance: for what rounding may change
+DIGITS = 1.0 / 8.0  # of a tolerance: for what rounding may change
 
 
 def digits_of(seen: Seen, drawn: Whole, brightest: float, tolerance: float) -> float:
@@ -50,7 +50,7 @@ def digits_of(seen: Seen, drawn: Whole, brightest: float, tolerance: float) -> f
         deep = 1.0
     doubt = RIMS * (deep * weight_doubt(look.erosion) + 5.0 * ROUNDING)
     found = brightest * (doubt + COLOR * ROUNDING)
-    return SHARE * tolerance if found <= SHARE * tolerance else 0.0
+    return DIGITS * tolerance if found <= DIGITS * tolerance else 0.0
 
 
 class ProvedTiles:

@@ -90,3 +90,27 @@ def together(layers: Sequence[Reached]) -> Reached:
 def most_together(sets: Reached) -> int:
     """Give how many layers meet at most; at least 1."""
     return max(int(sets.sum(axis=1).max(initial=0)), 1)
+
+
+def shares_of(layers: Sequence[Reached]) -> list[float]:
+    """Split a tolerance: in no tile the layers that meet have more than all of it.
+
+    A layer of many tiles has more to save. Shares go with the square root of their
+    number: with the number itself small layers would be left none for float32.
+
+    Parameters
+    ----------
+    layers
+        The tiles that each reaches, of one shape.
+
+    Returns
+    -------
+    A share for each, above 0.
+    """
+    weights = np.sqrt([max(int(np.count_nonzero(each)), 1) for each in layers])
+    sets = together(layers)
+    sums = sets @ weights
+    return [
+        float(weight / max(sums[theirs].max(initial=0.0), weight))
+        for weight, theirs in zip(weights, sets.T, strict=True)
+    ]

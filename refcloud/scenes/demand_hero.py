@@ -35,7 +35,7 @@ from refcloud.image import Picture
 from refcloud.lighting import Octaves, block_means, octave_march, solved_march
 from refcloud.lighting.octave_march import SINGLE_PRECISION
 from refcloud.optics import Medium, Sun
-from refcloud.raster.meeting import most_together, reached_by_box, together
+from refcloud.raster.meeting import reached_by_box, shares_of, together
 from refcloud.scene import Model, Motion, View
 from refcloud.scenes import cumulus
 from refcloud.scenes.cumulus import Placed
@@ -125,17 +125,16 @@ def draw(of: Hero, model: Model, view: View) -> Picture:
     clouds = farthest_first(camera, of)
     # What savings change of a cloud shows before its box, and adds up where boxes meet.
     made = [cloud_map(placed, camera, view, seconds) for placed in clouds]
-    sets = together(
-        [
-            reached_by_box(grid.lower, grid.upper, seen_from(camera, placed))
-            for placed, grid in zip(clouds, made, strict=True)
-        ]
-    )
-    for placed, grid in zip(clouds, made, strict=True):
+    reached = [
+        reached_by_box(grid.lower, grid.upper, seen_from(camera, placed))
+        for placed, grid in zip(clouds, made, strict=True)
+    ]
+    shares = shares_of(reached)
+    for placed, grid, share in zip(clouds, made, shares, strict=True):
         start, voxel = time.perf_counter(), fineness(camera, placed)
         how = {
             "step": 0.5 * voxel,
-            "tolerance": view.tolerance / most_together(sets),
+            "tolerance": view.tolerance * share,
             "seed": view.seed,
             "observe": view.observe,
         }
@@ -158,7 +157,9 @@ def draw(of: Hero, model: Model, view: View) -> Picture:
         notes.append(f"{what}: {voxels} voxels of {voxel:.2g}")
     if lights:
         notes.append(f"scattered light: {report_of(lights)}")
-    return Picture(light, None, merged(skipped, sets), seconds, tuple(notes))
+    return Picture(
+        light, None, merged(skipped, together(reached)), seconds, tuple(notes)
+    )
 
 
 def cloud_map(

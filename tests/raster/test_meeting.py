@@ -11,7 +11,7 @@ from refcloud.camera import Camera, OrthographicCamera, project
 from refcloud.compose import WHITE, merged, reached_by
 from refcloud.conventions import Skipped
 from refcloud.noise import uniform
-from refcloud.raster.meeting import most_together, reached_by_box, together
+from refcloud.raster.meeting import most_together, reached_by_box, shares_of, together
 from refcloud.raster.tile_lists import SIDE
 
 EYE = np.array([0.5, 1.0, 7.0])
@@ -80,3 +80,17 @@ def test_layers_apart_do_not_count_together() -> None:
 def test_nothing_meets_nothing() -> None:
     empty = np.zeros((2, 3), bool)
     assert most_together(together([empty, empty])) == 1
+
+
+@settings(max_examples=60)
+@given(seeds, st.integers(1, 6), st.floats(0.0, 1.0))
+def test_layers_that_meet_never_have_more_than_all_of_a_tolerance(
+    seed, count, filled
+) -> None:
+    layers = uniform(np.arange(count)[:, None, None], *np.indices((4, 5)), seed=seed)
+    layers = list(layers < filled)
+    shares = shares_of(layers)
+    assert min(shares) > 0.0
+    in_tiles = sum(share * layer for share, layer in zip(shares, layers, strict=True))
+    assert np.max(in_tiles) <= 1.0 + 1e-12
+    assert shares_of(layers[:1]) == [1.0]
