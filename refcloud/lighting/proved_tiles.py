@@ -26,8 +26,8 @@ from refcloud.raster.tile_lists import TileLists, Whole
 
 # Balls as deep as the deepest that a pixel sees through their rims, one behind the
 # other: a guess, of the clouds of the scenes. A wrong one costs time alone.
-RIMS = 4.0
-DIGITS = 1.0 / 8.0  # of a tolerance: for what rounding may change
+RIMS = 3.0
+DIGITS = 3.0 / 16.0  # of a tolerance: for what rounding may change
 
 
 def digits_of(seen: Seen, drawn: Whole, brightest: float, tolerance: float) -> float:
