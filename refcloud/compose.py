@@ -42,8 +42,8 @@ from refcloud.transport.plans import GradeName, Plan
 from refcloud.transport.scattering import report_of
 
 # Share of the tolerance that pass 1 gets; pass 2 has more to save, and gets what pass 1
-# does not use: where balls take turns that is all. Light that is there already, or that
-# a named plan solves, is off by its precision alone.
+# does not use: where balls take turns that is all. Light that a named plan solves is
+# off by its precision alone.
 LIGHT, KNOWN_LIGHT = 0.25, 1.0 / 16.0
 FAR = 1e6  # widths of a cloud: from there all of it is seen along one direction
 WHITE = "displayed white"  # the unit of errors of a picture
@@ -127,7 +127,7 @@ def draw_layers(
     clock.stop("sky")
     reached = [reached_by(layer.balls, camera) for layer in layers]
     sets = together(reached) if layers else np.zeros((0, 0), bool)
-    known = all(one.lit is not None or one.plan is not None for one in layers)
+    known = all(one.plan is not None for one in layers)
     of_light = KNOWN_LIGHT if known else LIGHT
     skipped: list[list[Skipped]] = []
     solved: list[ScatteredLight] = []
@@ -154,10 +154,11 @@ def draw_layers(
                 earlier=kept.get(number),
                 observe=observe,
             )
-            if backend == "numpy" and len(layers) == 1:  # where every error is told
-                used = sum(r.bound for r in lit.skipped if r.unit == WHITE)
-                left = max(left, share - used)
             kept.setdefault(number, lit)
+        if backend == "numpy" and layer.scattering == "single" and len(layers) == 1:
+            # Every error is told, whether light was carried here or brought.
+            used = sum(r.bound for r in lit.skipped if r.unit == WHITE)
+            left = max(left, share - used)
         clock.stop("light")
         drawn, rows = eye_pass(
             lit,
