@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from refcloud.camera import AnyCamera, Camera, axes
+from refcloud.camera import AnyCamera, Camera, axes, project
 from refcloud.checking import complaint
 from refcloud.conventions import Array, Backend, Observer, Skipped
 from refcloud.extremes import refuse_bright
@@ -29,14 +29,22 @@ from refcloud.lighting.hidden import touches
 from refcloud.lighting.solved import Lights
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
+from refcloud.raster.meeting import (
+    Reached,
+    most_together,
+    reached_by_discs,
+    together,
+)
+from refcloud.raster.tile_lists import Discs
 from refcloud.sky import Sky, clear_sky
 from refcloud.transport import ScatteredLight
 from refcloud.transport.plans import GradeName, Plan
 from refcloud.transport.scattering import report_of
 
 # Share of the tolerance that pass 1 gets; pass 2 has more to save, and gets what pass 1
-# does not use: where balls take turns that is all.
-LIGHT = 0.25
+# does not use: where balls take turns that is all. Light that a named plan solves is
+# off by its precision alone.
+LIGHT, KNOWN_LIGHT = 0.25, 1.0 / 16.0
 FAR = 1e6  # widths of a cloud: from there all of it is seen along one direction
 WHITE = "displayed white"  # the unit of errors of a picture
 
@@ -101,7 +109,7 @@ def draw_layers(
     background
         As `render`.
     tolerance
-        Largest error of a channel; every layer gets an equal share.
+        Largest error of a channel; the layers that meet in a pixel share it.
     seed, observe, backend
         As `render`.
     kept
@@ -117,20 +125,24 @@ def draw_layers(
     clock = Clock(seconds)
     behind = painted(background, camera, suns)
     clock.stop("sky")
-    skipped: list[Skipped] = []
+    reached = [reached_by(layer.balls, camera) for layer in layers]
+    sets = together(reached) if layers else np.zeros((0, 0), bool)
+    known = all(one.plan is not None for one in layers)
+    of_light = KNOWN_LIGHT if known else LIGHT
+    skipped: list[list[Skipped]] = []
     solved: list[ScatteredLight] = []
     rgba = np.zeros((camera.height, camera.width, 4))
     if behind is not None:
         rgba[..., :3], rgba[..., 3] = behind, 1.0
     kept = {} if kept is None else kept
     for number, layer in enumerate(layers):
-        share = tolerance / len(layers)
-        lit, left = layer.lit, (1.0 - LIGHT) * share
+        share = tolerance / most_together(sets)
+        lit, left = layer.lit, (1.0 - of_light) * share
         if not touches(layer.balls, camera):
-            skipped += _unseen(layer, suns)
+            skipped.append(_unseen(layer, suns))
             continue
         if layer.scattering != "single":
-            lit, lights = solved_layer(layer, suns, camera, LIGHT * share, observe)
+            lit, lights = solved_layer(layer, suns, camera, of_light * share, observe)
             solved += lights
         if lit is None:
             lit = light_pass(
@@ -138,14 +150,15 @@ def draw_layers(
                 suns,
                 medium=layer.medium,
                 look=layer.look,
-                tolerance=LIGHT * share,
+                tolerance=of_light * share,
                 earlier=kept.get(number),
                 observe=observe,
             )
-            if backend == "numpy":  # where every error is told
-                used = sum(r.bound for r in lit.skipped if r.unit == WHITE)
-                left = max(left, share - used)
             kept.setdefault(number, lit)
+        if backend == "numpy" and layer.scattering == "single" and len(layers) == 1:
+            # Every error is told, whether light was carried here or brought.
+            used = sum(r.bound for r in lit.skipped if r.unit == WHITE)
+            left = max(left, share - used)
         clock.stop("light")
         drawn, rows = eye_pass(
             lit,
@@ -158,9 +171,8 @@ def draw_layers(
         )
         # Before nothing, this layer covers the ones behind it (eq 28).
         rgba = drawn if behind is not None else drawn + (1.0 - drawn[..., 3:]) * rgba
-        skipped += [*lit.skipped, *rows]
+        skipped.append([*lit.skipped, *rows])
         clock.stop("eye")
-    skipped = list(merged(skipped))
     alpha = None if behind is not None else np.clip(rgba[..., 3], 0.0, 1.0)
     reused = sum(layer.lit is not None for layer in layers)
     if layers and not any(layer.look.erosion for layer in layers):
@@ -169,7 +181,7 @@ def draw_layers(
         notes = (*notes, f"light: reused for {reused} of {len(layers)} clouds")
     if solved:
         notes = (*notes, f"scattered light: {report_of(solved)}")
-    return Picture(rgba[..., :3], alpha, tuple(skipped), seconds, notes)
+    return Picture(rgba[..., :3], alpha, merged(skipped, sets), seconds, notes)
 
 
 def idle_seed(seed: int) -> tuple[str, ...]:
@@ -214,22 +226,46 @@ def solved_layer(
     return lit, lights if isinstance(lights, tuple) else (lights,)
 
 
-def merged(rows: Sequence[Skipped]) -> tuple[Skipped, ...]:
+def reached_by(balls: Metaballs, camera: AnyCamera) -> Reached:
+    """Tell which tiles of a picture balls may show in."""
+    x, y, _, scale = project(camera, balls.centers)
+    radius = balls.radii * scale
+    some = radius > 0.0
+    discs = Discs(x[some], y[some], radius[some])
+    return reached_by_discs(discs, camera.width, camera.height)
+
+
+def merged(layers: Sequence[Sequence[Skipped]], sets: Reached) -> tuple[Skipped, ...]:
     """Join the rows of several layers that say the same.
 
-    Errors of the picture add up at most; those of a stage's own result stay with it.
+    Errors of the picture add up over the layers that meet in a pixel, at most; those
+    of a stage's own result stay with it.
+
+    Parameters
+    ----------
+    layers
+        The rows of each.
+    sets
+        Which layers meet, of `together`.
     """
-    sums: dict[tuple[str, str], Skipped] = {}
-    for row in rows:
-        old = sums.get((row.stage, row.what))
-        if old is not None:
-            adds = row.unit == WHITE
-            bound = old.bound + row.bound if adds else max(old.bound, row.bound)
-            row = dataclasses.replace(
-                row, skipped=old.skipped + row.skipped, of=old.of + row.of, bound=bound
-            )
-        sums[row.stage, row.what] = row
-    return tuple(sums.values())
+    found: dict[tuple[str, str], Skipped] = {}
+    bounds: dict[tuple[str, str], Array] = {}
+    for number, rows in enumerate(layers):
+        for row in rows:
+            key = row.stage, row.what
+            old = found.get(key)
+            theirs = bounds.setdefault(key, np.zeros(len(layers)))
+            theirs[number] += row.bound
+            if old is not None:
+                skipped, of = old.skipped + row.skipped, old.of + row.of
+                most = max(old.bound, row.bound)
+                row = dataclasses.replace(row, skipped=skipped, of=of, bound=most)
+            found[key] = row
+    for key, row in found.items():
+        if row.unit == WHITE:
+            bound = float((sets @ bounds[key]).max(initial=0.0))
+            found[key] = dataclasses.replace(row, bound=bound)
+    return tuple(found.values())
 
 
 class Clock:

@@ -8,14 +8,17 @@ grows, so that no light is made.
 from __future__ import annotations
 
 import dataclasses
-from typing import Annotated
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Positive, Range, Seed, Shape
 from refcloud.noise import octave_sum_grid
+
+Numbers = TypeVar("Numbers", bound=NDArray[np.floating[Any]])
 
 OCTAVES = 4
 PERSISTENCE = 0.6
@@ -59,6 +62,48 @@ def detail_grid(
 
     Source: an extension of paper M, eq 12.
     """
+    table = lattice_of(lower, upper, cell=cell, pixel=pixel)
+    noise, skipped = octave_sum_grid(
+        *table.axes,
+        seed=seed,
+        octaves=OCTAVES,
+        persistence=PERSISTENCE,
+        normalize="none",
+        finest=table.spacing / cell,
+    )
+    rows = tuple(
+        dataclasses.replace(row, stage="erosion", bound=row.bound / NEARLY_ALL)
+        for row in skipped
+    )
+    return VoxelGrid(
+        np.minimum(noise / NEARLY_ALL, 1.0),
+        table.lower,
+        table.upper,
+        rows,
+    )
+
+
+class Lattice(NamedTuple):
+    """Where a table's values sit.
+
+    Attributes
+    ----------
+    spacing
+        Between them, scene units.
+    lower, upper
+        Corners of the table's box.
+    axes
+        x, y and z of the values, in cells of the coarsest octave.
+    """
+
+    spacing: float
+    lower: Array
+    upper: Array
+    axes: tuple[Array, Array, Array]
+
+
+def lattice_of(lower: Array, upper: Array, *, cell: float, pixel: float) -> Lattice:
+    """Lay a table over a box of the world, as `detail_grid` does."""
     spacing = max(cell / 2 ** (OCTAVES - 1) / SAMPLES, LEAST_SPACING)
     while spacing < pixel:
         spacing *= 2.0
@@ -72,26 +117,7 @@ def detail_grid(
         (a + np.arange(n) + 0.5) * (spacing / cell)
         for a, n in zip(first, count, strict=True)
     )
-    noise, skipped = octave_sum_grid(
-        x,
-        y,
-        z,
-        seed=seed,
-        octaves=OCTAVES,
-        persistence=PERSISTENCE,
-        normalize="none",
-        finest=spacing / cell,
-    )
-    rows = tuple(
-        dataclasses.replace(row, stage="erosion", bound=row.bound / NEARLY_ALL)
-        for row in skipped
-    )
-    return VoxelGrid(
-        np.minimum(noise / NEARLY_ALL, 1.0),
-        first * spacing,
-        (first + count) * spacing,
-        rows,
-    )
+    return Lattice(spacing, first * spacing, (first + count) * spacing, (x, y, z))
 
 
 @checked
@@ -179,7 +205,7 @@ def lit_share(
     return lit_share_of(noise, ahead, relief)
 
 
-def lit_share_of(noise: Array, ahead: Array, relief: float) -> Array:
+def lit_share_of(noise: Numbers, ahead: Numbers, relief: float) -> Numbers:
     """Give the share without a check: the inner form of `lit_share`.
 
     Parameters
@@ -191,7 +217,7 @@ def lit_share_of(noise: Array, ahead: Array, relief: float) -> Array:
     -------
     As `lit_share`, a new array.
     """
-    share = ahead - noise
+    share: Any = ahead - noise
     share += 1.0
     share *= -0.5 * relief
     share += 1.0

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
+import numpy as np
+
 from refcloud.camera import AnyCamera
 from refcloud.checking import checked
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
@@ -17,10 +19,11 @@ from refcloud.lighting.certified_tiles import certified_tiles
 from refcloud.lighting.colours import Haze
 from refcloud.lighting.ends import refuse_extreme
 from refcloud.lighting.flat_tiles import flat_balls
+from refcloud.lighting.fronts import fill, half_width, hull_of
 from refcloud.lighting.hidden import without_faint
 from refcloud.lighting.lit import LitMetaballs
+from refcloud.lighting.proved_tiles import DIGITS, ProvedTiles, digits_of
 from refcloud.lighting.seen import seen_by, shading_of
-from refcloud.lighting.shaded_tiles import shaded_tiles
 from refcloud.raster.canvas import Canvas
 from refcloud.raster.tile_lists import PIXELS, parts
 
@@ -86,6 +89,7 @@ def eyeward(
     # 1. What the eye sees of every ball; leave out what cannot show.
     seen, skipped = seen_by(lit, camera, haze)
     # Alpha counts as a channel: what may change is 1 at least.
+    over = background is not None
     behind = 0.0 if background is None else float(background.max(initial=0.0))
     brightest = max(1.0, seen.brightest(), behind)
     visible, rows = without_faint(
@@ -97,35 +101,55 @@ def eyeward(
     )
     skipped += rows
 
-    # 2. Light as a field, and the noise that erodes footprints.
-    shading, tables = shading_of(seen, seed, watch)
-    skipped += tables
     drawn = seen.order[visible[seen.order]]
-    watch("eye order", drawn)
-    smooth = shading.field is None and shading.detail is None
-    flat = flat_balls(seen, drawn)
+    flat, look = flat_balls(seen, drawn), lit.look
+    smooth = not (look.light_reach > 0.0 or look.erosion > 0.0)
     by_products = smooth and lit.balls.kernel == "wyvill"
 
-    # 3. Draw tile after tile, each from the front, before the background.
-    # Behind pixels that let no more than this through, all together changes less than
-    # that share of the tolerance: it is between 0 and the brightest, seen through them.
-    share = 1.0 - FAINT
+    # 2. What the tolerance goes to. Behind pixels that let no more than `least` pass,
+    # all together changes less than that share: it is between 0 and the brightest, or
+    # off the middle of what it can be by less, seen through them.
+    share, digits, width = 1.0 - FAINT, 0.0, brightest
+    low = high = np.zeros(3)
     if by_products:
         share = OPAQUE_OF_NODES if tolerance >= NODES_FROM else OPAQUE
-    least = max(share * tolerance / brightest, ROUNDED)
+    elif tolerance > 0.0:
+        digits = digits_of(seen, drawn, brightest, tolerance)
+        low, high = hull_of(seen, background)
+        share -= DIGITS  # whatever comes of it: rows of several clouds add up
+        width = max(half_width(low, high, over), share * tolerance)
+    least = max(share * tolerance / width, ROUNDED)
     most = (1.0 - FAINT - share) * tolerance
+
+    # 3. Light as a field, and the noise that erodes footprints.
+    shading, rows = shading_of(seen, seed, observe, single=digits > 0.0)
+    skipped += rows
+    watch("eye order", drawn)
+
+    # 4. Draw tile after tile, each from the front, before the background.
     canvas = Canvas(camera.width, camera.height, background)
+    shaded = ProvedTiles(
+        seen,
+        drawn,
+        shading,
+        lambda: shading_of(seen, seed, None)[0],
+        digits,
+        brightest,
+    )
     hidden = looked = 0
     for lists in parts(flat.discs, camera.width, camera.height):
         if by_products:
             found, rows = certified_tiles(lists, flat, least, most, brightest, behind)
             skipped += rows
         else:
-            found = shaded_tiles(lists, seen, drawn, shading, least)
+            found = shaded.draw(lists, least)
+            if tolerance > 0.0:
+                fill(found, flat.groups, least, low, high, over)
         canvas.paint(lists, flat.groups, found.light, found.clear)
         hidden += PIXELS * int(found.unseen.sum()) + found.closed
         looked += PIXELS * len(lists.ball)
+    skipped += shaded.rows()
     if hidden:
         what = "pixels of balls' tiles behind opaque ones"
-        skipped.append(Skipped("eye", what, hidden, looked, least * brightest))
+        skipped.append(Skipped("eye", what, hidden, looked, least * width))
     return canvas.pixels(), tuple(skipped)

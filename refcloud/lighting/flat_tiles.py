@@ -63,12 +63,16 @@ class Drawn(NamedTuple):
         List entries behind an opaque front, shape (T,).
     closed
         Pixels of other entries that are complete, each counted for every such entry.
+    doubt
+        What rounding of opacities may change at a pixel, for colours up to 1; 0 where
+        it does not count.
     """
 
     light: Floats
     clear: Floats
     unseen: Whole
     closed: int = 0
+    doubt: float = 0.0
 
 
 def flat_balls(seen: Seen, drawn: Whole) -> Flat:

@@ -18,11 +18,13 @@ from refcloud.checking import checked
 from refcloud.cloudmap.sample import clamped_trilinear
 from refcloud.conventions import Array, Positive, Range, Shape
 from refcloud.lighting.order import depth_order
-from refcloud.metaballs import Metaballs, profile
+from refcloud.metaballs import Metaballs
+from refcloud.metaballs.kernels import profile_of
 
 SPACING = 0.5  # nodes per median radius: no ball of that size falls between nodes
 LEAST_SPACING = 1e-90  # counts of nodes stay finite numbers, whatever the radii
 MOST_NODES = 1 << 20  # a wider cloud gets a coarser table
+PAIRS = 1 << 14  # of node and ball, worked on together
 # Weight of the ball's own value against a full density's 1: it decides where the table
 # is empty, and nowhere else shows.
 OWN = 1e-3
@@ -85,27 +87,39 @@ def light_field(
     while np.prod(np.ceil((upper - lower) / spacing) + 1.0) > MOST_NODES:
         spacing *= 2.0
     W, H, D = (np.ceil((upper - lower) / spacing) + 1.0).astype(int)
-    sums = np.zeros((D, H, W, channels))
     value = np.concatenate([values, np.ones((len(values), 1))], axis=1)
     value *= (balls.densities / largest)[:, None]
-    # Each ball adds to the box of nodes that it reaches.
+    # 1. Each ball adds to the box of nodes that it reaches.
     first = np.ceil((balls.centers - radii[:, None] - lower) / spacing).astype(int)
     last = np.floor((balls.centers + radii[:, None] - lower) / spacing).astype(int)
     first, last = np.maximum(first, 0), np.minimum(last + 1, [W, H, D])
-    # In an order that the input's does not show in: sums round by their order.
-    for k in depth_order(balls, np.zeros(len(radii))):
-        (i0, j0, k0), (i1, j1, k1) = first[k], last[k]
-        x, y, z = (
-            np.square((lower[a] + np.arange(low, high) * spacing - c) / radii[k])
-            for a, low, high, c in zip(
-                range(3), first[k], last[k], balls.centers[k], strict=True
-            )
-        )
-        q = z[:, None, None] + y[None, :, None] + x[None, None, :]
-        if q.size:
-            weight = profile(q, balls.kernel)
-            sums[k0:k1, j0:j1, i0:i1] += weight[..., None] * value[k]
-    return LightField(sums, lower, spacing)
+    box = np.maximum(last - first, 0)
+    # 2. In an order that the input's does not show in: sums round by their order.
+    order = depth_order(balls, np.zeros(len(radii)))
+    many = np.cumsum(box[order].prod(axis=1))
+    sums = np.zeros((channels, D * H * W))
+    for part in np.split(order, np.flatnonzero(np.diff(many // PAIRS)) + 1):
+        # 3. A pair for each node of each box, ball after ball.
+        wide, high, deep = box[part].T
+        count = wide * high * deep
+        within = np.arange(int(count.sum()))
+        within -= np.repeat(np.cumsum(count) - count, count)
+        number = np.repeat(np.arange(len(part)), count)
+        row, i = np.divmod(within, wide[number])
+        k, j = np.divmod(row, high[number])
+        ball = part[number]
+        node, q = np.zeros(len(ball), np.intp), np.zeros(len(ball))
+        for a, size, step in ((2, D, k), (1, H, j), (0, W, i)):
+            place = first[ball, a] + step
+            node = node * size + place
+            away = lower[a] + place * spacing - balls.centers[ball, a]
+            q += np.square(away / radii[ball])
+        weight = profile_of(q, balls.kernel)
+        # 4. `add.at` adds pair after pair, in their order.
+        for total, worth in zip(sums, value.T, strict=True):
+            np.add.at(total, node, weight * worth[ball])
+    table = np.ascontiguousarray(sums.T).reshape(D, H, W, channels)
+    return LightField(table, lower, spacing)
 
 
 @checked

@@ -15,7 +15,9 @@ from refcloud.lighting.hidden import Mask, on_screen
 from refcloud.lighting.lightfield import light_field
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.order import depth_order
-from refcloud.lighting.shading import Ball, Shading
+from refcloud.lighting.shading import FRONT, Ball, Shading
+from refcloud.lighting.single_detail import single_detail
+from refcloud.metaballs import Metaballs
 
 RISE = 0.25  # of the noise's coarsest cell: the step toward a sun that shows its relief
 
@@ -154,7 +156,7 @@ def _fading(lit: LitMetaballs, depth: Array) -> Array:
 
 
 def shading_of(
-    seen: Seen, seed: int, watch: Observer
+    seen: Seen, seed: int, observe: Observer | None, *, single: bool = False
 ) -> tuple[Shading, tuple[Skipped, ...]]:
     """Tabulate the light as a field, and the noise that erodes footprints.
 
@@ -163,8 +165,10 @@ def shading_of(
     seen
         Of `seen_by`; the balls in the picture count, drawn or not: the tables must not
         change with the tolerance.
-    seed, watch
+    seed, observe
         As `eyeward`.
+    single
+        Whether the noise is for `SinglePlaces`.
 
     Returns
     -------
@@ -172,21 +176,30 @@ def shading_of(
     """
     lit, look, shown = seen.lit, seen.lit.look, seen.shown
     balls, skipped = lit.balls, ()
-    field = detail = None
+    field = detail = rounded = None
     if look.light_reach > 0.0 and shown.any():
         values = seen.colours.reshape(len(seen.colours), -1)
         field = light_field(balls, values, reach=look.light_reach)
-    cell = look.erosion_cell
+    cell, frame = look.erosion_cell, axes(seen.camera)
+    toward = np.array([sun.direction for sun in lit.suns]).reshape(-1, 3)
     if look.erosion > 0.0 and shown.any():
         cell *= float(np.median(balls.radii))
         places = balls.centers[shown]
         reach = balls.radii[shown][:, None] + RISE * cell
-        lower, upper = (places - reach).min(axis=0), (places + reach).max(axis=0)
-        pixel = 1.0 / float(seen.scale[shown].max())
-        detail = detail_grid(lower, upper, cell=cell, pixel=pixel, seed=seed)
-        skipped = detail.skipped
-        watch("detail", detail)
-    toward = np.array([sun.direction for sun in lit.suns]).reshape(-1, 3)
-    return Shading(
-        axes(seen.camera), look, balls.kernel, detail, field, toward * (RISE * cell)
-    ), skipped
+        box = (places - reach).min(axis=0), (places + reach).max(axis=0)
+        how = {"cell": cell, "pixel": 1.0 / float(seen.scale[shown].max())}
+        if single:
+            drawn = Metaballs(places, balls.radii[shown], balls.densities[shown])
+            steps = toward * (RISE * cell)
+            rounded = single_detail(
+                *box, drawn, frame, steps, front=FRONT, seed=seed, **how
+            )
+            skipped = rounded.skipped
+        if observe is not None or not single:
+            detail = detail_grid(*box, seed=seed, **how)
+            skipped = detail.skipped
+        if observe is not None:
+            observe("detail", detail)
+    toward = toward * (RISE * cell)
+    shading = Shading(frame, look, balls.kernel, detail, field, toward, rounded)
+    return shading, skipped

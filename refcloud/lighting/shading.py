@@ -12,6 +12,7 @@ from refcloud.conventions import Array
 from refcloud.lighting.erosion import eroded_of, lit_share_of
 from refcloud.lighting.lightfield import LightField, field_value_of
 from refcloud.lighting.look import Look
+from refcloud.lighting.single_detail import SingleDetail
 from refcloud.metaballs.kernels import Kernel
 from refcloud.raster.blending import blend_patch
 from refcloud.raster.footprint import Patch, footprint_of, opacity_of, patch_of
@@ -40,6 +41,8 @@ class Shading:
     toward
         Steps toward the suns over which the noise's rise is taken, scene units, shape
         (S, 3).
+    single
+        The noise in single precision, where places are looked at in that.
     """
 
     frame: Array
@@ -48,6 +51,7 @@ class Shading:
     detail: VoxelGrid | None
     field: LightField | None
     toward: Array
+    single: SingleDetail | None = None
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,7 @@ from refcloud.image import Picture
 from refcloud.lighting import Octaves, block_means, octave_march, solved_march
 from refcloud.lighting.octave_march import SINGLE_PRECISION
 from refcloud.optics import Medium, Sun
+from refcloud.raster.meeting import reached_by_box, shares_of, together
 from refcloud.scene import Model, Motion, View
 from refcloud.scenes import cumulus
 from refcloud.scenes.cumulus import Placed
@@ -119,20 +120,21 @@ def draw(of: Hero, model: Model, view: View) -> Picture:
     start = time.perf_counter()
     light = clear_sky(camera, Sky())
     seconds["sky"] = time.perf_counter() - start
-    skipped: list[Skipped] = []
+    skipped: list[tuple[Skipped, ...]] = []
     notes, lights = [], []
     clouds = farthest_first(camera, of)
-    for placed in clouds:
-        start = time.perf_counter()
-        voxel = fineness(camera, placed)
-        if voxel < KEPT_FROM or view.observe is not None:
-            grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
-        else:
-            grid = coarse_billows(placed.seed, voxel)
-        middle = time.perf_counter()
+    # What savings change of a cloud shows before its box, and adds up where boxes meet.
+    made = [cloud_map(placed, camera, view, seconds) for placed in clouds]
+    reached = [
+        reached_by_box(grid.lower, grid.upper, seen_from(camera, placed))
+        for placed, grid in zip(clouds, made, strict=True)
+    ]
+    shares = shares_of(reached)
+    for placed, grid, share in zip(clouds, made, shares, strict=True):
+        start, voxel = time.perf_counter(), fineness(camera, placed)
         how = {
             "step": 0.5 * voxel,
-            "tolerance": view.tolerance / len(clouds),
+            "tolerance": view.tolerance * share,
             "seed": view.seed,
             "observe": view.observe,
         }
@@ -148,15 +150,29 @@ def draw(of: Hero, model: Model, view: View) -> Picture:
         clear = math.exp(-distance(camera, placed) / placed.air)
         L = clear * L + (1.0 - clear) * (1.0 - T)[..., None] * Sky().haze
         light = L + T[..., None] * light
-        seconds["generate"] += middle - start
-        seconds["march"] += time.perf_counter() - middle
-        skipped += [*grid.skipped, *rows]
+        seconds["march"] += time.perf_counter() - start
+        skipped.append((*grid.skipped, *rows))
         what = "cloud" if placed is of.hero else "field"
         voxels = np.count_nonzero(grid.density)
         notes.append(f"{what}: {voxels} voxels of {voxel:.2g}")
     if lights:
         notes.append(f"scattered light: {report_of(lights)}")
-    return Picture(light, None, merged(skipped), seconds, tuple(notes))
+    return Picture(
+        light, None, merged(skipped, together(reached)), seconds, tuple(notes)
+    )
+
+
+def cloud_map(
+    placed: Placed, camera: AnyCamera, view: View, seconds: dict[str, float]
+) -> VoxelGrid:
+    """Generate a cloud as finely as it is seen."""
+    start, voxel = time.perf_counter(), fineness(camera, placed)
+    if voxel < KEPT_FROM or view.observe is not None:
+        grid = billows(seed=placed.seed, voxel=voxel, observe=view.observe)
+    else:
+        grid = coarse_billows(placed.seed, voxel)
+    seconds["generate"] += time.perf_counter() - start
+    return grid
 
 
 def best(view: View) -> Literal["single", "multiple"]:

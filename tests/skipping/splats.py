@@ -12,6 +12,8 @@ from twins.lighting import scattered_balls
 from refcloud.camera import Camera
 from refcloud.compose import Layer, draw_layers
 from refcloud.lighting import LitMetaballs, ball_colours, eyeward, sunward
+from refcloud.lighting.exact_places import ExactPlaces
+from refcloud.lighting.seen import shading_of
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Sun
 from skipping import Found, proof, replaced
@@ -147,6 +149,19 @@ def pixels_between_nodes() -> Found:
 @proof("eye", "pixels between every second one")
 def pixels_between_every_second_one() -> Found:
     return with_and_without("LEAST_RISE", "LEAST_NODES")
+
+
+@proof("eye", "tiles of shaded balls in double precision")
+def shaded_tiles_in_double_precision() -> Found:
+    lit = sunward(scattered_balls(2, 60), SUNS, **HOW)
+    found, rows = seen(lit, WIDE, 0.01)
+
+    def exact(one, shading):  # the table of exact places is another one
+        return ExactPlaces(one, shading_of(one, 0, None)[0])
+
+    with replaced("refcloud.lighting.proved_tiles", SinglePlaces=exact):
+        whole, _ = seen(lit, WIDE, 0.01)
+    return Found(found, whole, rows)
 
 
 # Tiles draw in another order.
