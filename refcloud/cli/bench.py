@@ -30,11 +30,14 @@ class Measurement:
         Rows for machines instead of a table.
     peers
         Other libraries and OpenGL as well, those that are installed.
+    only
+        Of certificates: one kind of scenes, all of them without it.
     """
 
     quick: bool = False
     json: bool = False
     peers: bool = False
+    only: certificates.Word | None = None
 
 
 OPTIONS = options_of(Measurement)
@@ -73,6 +76,9 @@ def run(words: Sequence[str]) -> int:
         expected = "one of " + ", ".join(NAMES)
         raise ValueError(complaint("WHAT", expected, repr(name)))
     how, figure = Measurement(**given.of(OPTIONS)), given.options.get(PLOT.flag)
+    if how.only is not None and name != CERTIFICATES:
+        advice = f"only {CERTIFICATES} has kinds"
+        raise ValueError(complaint("--only", f"none beside {name}", how.only, advice))
     if figure is not None:
         figure = ready(figure, FIGURES, PLOT.flag)
     if name == STABILITY:
@@ -108,7 +114,7 @@ def _certificates(how: Measurement, figure: Path | None) -> int:
         raise ValueError(
             complaint(PLOT.flag, "none beside certificates", "one", advice)
         )
-    found = certificates.tallies(how.quick)
+    found = certificates.tallies(how.quick, how.only)
     if how.json:
         rows = [{"kind": k, **dataclasses.asdict(t)} for k, t in found.items()]
         say(json.dumps(rows, indent=1))
