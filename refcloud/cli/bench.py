@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 from refcloud import bench
 from refcloud.bench import certificates, skipping, stability
 from refcloud.cli.options import FileOption, options_of
-from refcloud.cli.outputs import ready, say
+from refcloud.cli.outputs import printable, ready, say
 from refcloud.cli.parser import Command
 from refcloud.refusal import complaint
 
@@ -94,8 +95,16 @@ def run(words: Sequence[str]) -> int:
     else:
         say(bench.table(subject, rows))
     if figure is not None:
-        say(str(bench.plot(subject, rows, figure)))
+        _name(bench.plot(subject, rows, figure), how)
     return 0
+
+
+def _name(figure: Path, how: Measurement) -> None:
+    """Print a figure's name; beside rows for machines it is no result."""
+    if how.json:
+        print(printable(str(figure), sys.stderr), file=sys.stderr)
+    else:
+        say(str(figure))
 
 
 def subjects() -> dict[str, str]:
@@ -132,7 +141,7 @@ def _stability(how: Measurement, figure: Path | None) -> int:
     else:
         say(stability.text_of(panels))
     if figure is not None:
-        say(str(stability.labelled_map(panels).save(figure, tone="none")))
+        _name(stability.labelled_map(panels).save(figure, tone="none"), how)
     return 0
 
 
