@@ -4,9 +4,9 @@ A certified saving was compared with the exact method on a sample of its own pic
 which may miss the worst place (`Skipped.how`). Here that risk is counted: scenes are
 drawn by an integer hash of their number, so that each can be drawn again.
 
-Measured, tolerances from 1e-4 to 1e-1: of 4500 pictures of splats by the paper's
-rules 0 were off by more than asked, of 1400 of the look cumulus 0, of 700 marched
-ones 3 (by 37 % at most), of 180 of every order of scattering 0.
+Measured, tolerances from 1e-4 to 1e-1: of 6000 pictures of splats by the paper's
+rules none was off by more than asked, nor of 3000 of the look cumulus, of 1000 marched
+ones or of 30 of every order of scattering; of 50 large marched ones one was, by .2 %.
 """
 
 from __future__ import annotations
@@ -168,5 +168,5 @@ def table_of(found: dict[Kind, Tally]) -> str:
     lines = [["scenes", "drawn", "certified", "failed", "worst error, of asked"]]
     for kind, one in found.items():
         numbers = (one.scenes, one.certified, one.failed)
-        lines.append([kind, *map(str, numbers), f"{one.worst:.3g}"])
+        lines.append([kind, *map(str, numbers), f"{one.worst:.4g}"])
     return "\n".join(columns(lines, 1))
