@@ -139,12 +139,18 @@ def axes(camera: AnyCamera) -> Array:
            [0., 0., 1.]])
     """
     back = unit_vector(camera.eye - camera.target)
-    right = np.cross(unit_vector(camera.up), back)
+    right = _cross(unit_vector(camera.up), back)
     if right @ right < PARALLEL:
         # Looking along `up`: the world axis that the view is farthest from serves.
-        right = np.cross(np.eye(3)[np.argmin(np.abs(back))], back)
+        right = _cross(np.eye(3)[np.argmin(np.abs(back))], back)
     right = unit_vector(right)
-    return np.array([right, np.cross(back, right), back])
+    return np.array([right, _cross(back, right), back])
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Give the cross product of two vectors."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
 
 
 @checked

@@ -14,7 +14,7 @@ LONGEST_FILE = 300
 
 # From the ground up. A file imports from lower floors and from its own room only.
 FLOORS = (
-    ("conventions", "references"),
+    ("conventions", "references", "products"),
     ("refusal",),
     ("checking", "extremes"),
     ("files", "parameters"),
@@ -132,6 +132,31 @@ def test_the_rule_of_imports_itself(room: str, name: str, allowed: bool) -> None
 def test_files_are_short(path: Path) -> None:
     lines = len(path.read_text("utf-8").splitlines())
     assert lines <= LONGEST_FILE, f"{lines} lines: it holds two ideas, split it"
+
+
+def test_no_test_has_a_name_that_pytest_passes_over() -> None:
+    """Of a file of tests every function is one, or something there names it."""
+    lost = []
+    for path in sorted(Path(__file__).parent.rglob("test_*.py")):
+        tree = ast.parse(path.read_text("utf-8"))
+        named = {
+            getattr(node, field)
+            for node in ast.walk(tree)
+            for kind, field in (
+                (ast.Name, "id"),
+                (ast.Attribute, "attr"),
+                (ast.arg, "arg"),
+            )
+            if isinstance(node, kind)
+        }
+        lost += [
+            f"{path.name}: {node.name}"
+            for node in tree.body
+            if isinstance(node, ast.FunctionDef)
+            and not node.name.startswith("test_")
+            and node.name not in named
+        ]
+    assert not lost, f"never run: {lost}"
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ from typing import Annotated, Literal
 
 import numpy as np
 from lesson import Lesson
-from plots import curves
 from sheets import Sheet, grey
 
 from refcloud import noise
@@ -80,12 +79,9 @@ lesson.source(_literal)
 # flat at every lattice point, which is why the cells show as a soft quilt.
 
 # %%
+ways: tuple[Way, ...] = ("linear", "cosine", "cubic", "quintic", "catmull_rom")
 lesson.strip(
-    picture,
-    "interpolant",
-    ("linear", "cosine", "cubic", "quintic", "catmull_rom"),
-    "03-strip",
-    "Five interpolants between the same lattice values",
+    picture, "interpolant", ways, "03-strip", "Five interpolants of the same values"
 )
 lesson.row(
     {"not smoothed": picture, "smoothed": lambda: picture(smooth=True)},
@@ -97,11 +93,11 @@ lesson.row(
 # %% [markdown]
 # ## Where this breaks: smooth is not accurate
 #
-# Paper M lists its interpolants "from the fastest to the best". Best at what? Take a
-# function whose values between the lattice points are known, a sine, and halve the
+# Paper M lists its interpolants "from the fastest one to the best one". Best at what?
+# Take a function that is known between the lattice points too, a sine, and halve the
 # spacing again and again. The slope of the error is the **order**: linear 2, cosine and
-# quintic 1, Catmull-Rom 3. A cosine step is smooth, but each of its steps is flat at
-# its ends where the sine is not, and no spacing mends that (E13).
+# quintic 1, Catmull-Rom 3. A cosine's step is smooth, but flat at both ends, where the
+# sine is not, and no spacing mends that (E13).
 
 
 # %%
@@ -115,20 +111,15 @@ def worst(interpolant: Way, spacing: float) -> float:
 
 
 spacings = 2.0 ** -np.arange(8, 0, -1.0)
-ways: tuple[Way, ...] = ("cosine", "quintic", "cubic", "linear", "catmull_rom")
 errors = {way: np.array([worst(way, h) for h in spacings]) for way in ways}
-lesson.show(
-    curves(
-        lesson.size(480, 320),
-        spacings,
-        errors,
-        y_range=(1e-9, 1.0),
-        names=("spacing", "largest error"),
-        log=(True, True),
-        legend="bottom",
-    ),
+lesson.plot(
+    spacings,
+    errors,
     "03-order",
     "The error of five interpolants of a sine: the smooth ones are the worst",
+    y_range=(1e-9, 1.0),
+    names=("spacing", "largest error"),
+    log=(True, True),
 )
 
 # %% [markdown]
@@ -139,8 +130,7 @@ lesson.show(
 #
 # 1. How large can equation 6, the paper's cubic, get between values in [-1, 1]?
 # 2. Read the order of each interpolant off the figure, with a ruler or with numpy.
-# 3. How much contrast does smoothing take? Compare standard deviations at lattice
-#    points.
+# 3. How much contrast does smoothing take from the values at lattice points?
 #
 # ## Solutions
 
@@ -152,10 +142,8 @@ assert plain.cubic(-1, 1, 1, -1, 0.5) == 1.5
 orders = {way: round(float(np.log2(e[2] / e[1]))) for way, e in errors.items()}
 assert orders == {"linear": 2, "cosine": 1, "quintic": 1, "cubic": 1, "catmull_rom": 3}
 
-# 3: independent values add by squares: sqrt of the sum of squared weights, 0.51.
+# 3: the standard deviation falls to sqrt(sum of squared weights) = 0.51: half is lost.
 squares = (9 / 18) ** 2 + 6 * (4 / 108) ** 2 + 12 * (3 / 216) ** 2 + 8 * (2 / 144) ** 2
-lattice = np.arange(40)
-raw, soft = (
-    noise.value_grid(lattice, lattice, lattice, smooth=s) for s in (False, True)
-)
+x = np.arange(40)
+raw, soft = (noise.value_grid(x, x, x, smooth=s) for s in (False, True))
 assert abs(soft.std() / raw.std() - np.sqrt(squares)) < 0.02

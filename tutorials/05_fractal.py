@@ -105,7 +105,7 @@ lesson.strip(picture, "kind", ("man", "fbm", "turbulence"), "05-kinds", "Three s
 # %% [markdown]
 # ## Where this breaks
 #
-# * **The range.** Four halves sum to 1 + 1/2 + 1/4 + 1/8 = 1.875, not 1 (E11). Paper M
+# * **The range.** Four octaves can sum to 1 + 1/2 + 1/4 + 1/8 = 1.875 (E11). Paper M
 #   says nothing; `normalize=` cuts at 1 (`"clip"`), divides by the true bound
 #   (`"bound"`), or leaves it (`"none"`).
 # * **The pixel.** An octave finer than the samples is not detail but dirt: each sample

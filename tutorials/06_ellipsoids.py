@@ -18,15 +18,12 @@ from refcloud.cloudmap import evaluate_quadric, modulate, quadric
 from refcloud.conventions import Range
 
 lesson = Lesson()
-SUN = rc.Sun([-0.62, 0.62, 0.42])
 VOXEL = 4.0 if lesson.quick else 2.0  # edge, scene units
 
 
 def picture(
     *,
     threshold: Annotated[float, Range(0.0, 0.9)] = 0.1,
-    octaves: Annotated[int, Range(1, 6)] = 4,
-    persistence: Annotated[float, Range(0.1, 1.0)] = 0.5,
     ellipsoids: Annotated[int, Range(1, 12)] = 1,
     seed: Annotated[int, Range(0, 99)] = 2,
 ) -> rc.Picture:
@@ -36,33 +33,25 @@ def picture(
     ----------
     threshold
         t: products below it are empty.
-    octaves
-        Z of the noise.
-    persistence
-        s of the noise.
     ellipsoids
         How many ellipsoid volumes are united.
     seed
         Which cloud.
     """
     cloud = rc.generate(
-        "ellipsoid",
-        seed=seed,
-        voxel=VOXEL,
-        threshold=threshold,
-        octaves=octaves,
-        persistence=persistence,
-        ellipsoids=ellipsoids,
+        "ellipsoid", seed=seed, voxel=VOXEL, threshold=threshold, ellipsoids=ellipsoids
     )
+    return seen(cloud, [0, -12, 105], [0, 0, 0])
+
+
+def seen(cloud: rc.VoxelGrid, eye: list[float], target: list[float]) -> rc.Picture:
+    """Draw a cloud map, a ball for each voxel."""
     width, height = lesson.size(480, 360)
-    camera = rc.Camera([0, -12, 105], [0, 0, 0], width=width, height=height)
-    balls = rc.voxel_balls(cloud)
-    medium = rc.Medium(1.5)
     return rc.render(
-        balls,
-        camera=camera,
-        suns=SUN,
-        medium=medium,
+        rc.voxel_balls(cloud),
+        camera=rc.Camera(eye, target, width=width, height=height),
+        suns=rc.Sun([-0.62, 0.62, 0.42]),
+        medium=rc.Medium(1.5),
         tolerance=lesson.tolerance(1 / 255),
     )
 
@@ -85,8 +74,7 @@ from refcloud.plain import cloudmap as plain
 lesson.source(plain.quadric, plain.modulate, modulate)
 
 # %% [markdown]
-# A slice through the middle shows the three stages: quadric, noise, and what is left of
-# their product.
+# A slice through the middle shows quadric, noise, and what is left of their product:
 
 # %%
 width, height = lesson.size(208, 150)
@@ -104,7 +92,7 @@ lesson.row(
 # %% [markdown]
 # ## The knob: the threshold
 #
-# "Highlights empty spaces", says paper M: the higher `t`, the more falls away.
+# It is there "for highlighting empty spaces": the higher `t`, the more falls away.
 
 # %%
 lesson.strip(
@@ -123,17 +111,8 @@ lesson.strip(
 # %%
 def moved(relief: float) -> rc.Picture:
     """Draw a pile of ellipsoids whose surface the noise moves so far."""
-    balls = rc.voxel_balls(rc.generate(seed=7, voxel=VOXEL, relief=relief))
-    width, height = lesson.size(480, 360)
-    camera = rc.Camera([3, -4, 128], [3, 14, 0], width=width, height=height)
-    medium = rc.Medium(1.5)
-    return rc.render(
-        balls,
-        camera=camera,
-        suns=SUN,
-        medium=medium,
-        tolerance=lesson.tolerance(1 / 255),
-    )
+    cloud = rc.generate(seed=7, voxel=VOXEL, relief=relief)
+    return seen(cloud, [3, -4, 128], [3, 14, 0])
 
 
 lesson.row(

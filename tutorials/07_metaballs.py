@@ -12,7 +12,6 @@ from typing import Annotated, Literal
 
 import numpy as np
 from lesson import Lesson
-from plots import curves
 from sheets import Sheet, grey
 
 import refcloud as rc
@@ -50,12 +49,10 @@ def picture(
     line = np.clip(2.0 - np.abs(density - level) / slope, 0.0, 1.0)
     shade = np.clip(density / 1.3, 0.0, 1.0)
     red, dark = np.maximum(shade, line), shade * (1.0 - 0.7 * line)
-    return grey(np.stack([red, dark + 0.3 * line * 0.5, dark], axis=-1))
+    return grey(np.stack([red, dark + 0.15 * line, dark], axis=-1))
 
 
-lesson.show(
-    picture, "07-two", "Two metaballs flow together: density, and where it is 0.3"
-)
+lesson.show(picture, "07-two", "Two metaballs flow together; the line is density 0.3")
 
 # %% [markdown]
 # ## One formula
@@ -79,21 +76,18 @@ lesson.source(metaballs.kernels.wyvill)
 
 # %%
 a = np.linspace(0.0, 1.0, 201)
-lesson.show(
-    curves(
-        lesson.size(480, 300),
-        a,
-        {
-            "Wyvill": metaballs.profile(a**2),
-            "Gauss, R = 2 sigma": metaballs.profile(a**2, "gaussian"),
-            "as printed": np.array([plain.printed_wyvill(x, 1.0) for x in a]),
-        },
-        y_range=(0.0, 2.0),
-        names=("r / R", "density"),
-        legend="bottom",
-    ),
+profile = metaballs.profile(a**2)
+lesson.plot(
+    a,
+    {
+        "Wyvill": profile,
+        "Gauss, R = 2 sigma": metaballs.profile(a**2, "gaussian"),
+        "as printed": [plain.printed_wyvill(x, 1.0) for x in a],
+    },
     "07-kernels",
     "Two kernels, and equation 12 as it is printed",
+    y_range=(0.0, 2.0),
+    names=("r / R", "density"),
 )
 
 # %% [markdown]
@@ -101,11 +95,7 @@ lesson.show(
 
 # %%
 lesson.strip(
-    picture,
-    "distance",
-    (0.0, 0.8, 1.2, 1.5, 2.0),
-    "07-strip",
-    "Centres 0 to 2 radii apart",
+    picture, "distance", (0.0, 0.8, 1.2, 1.5, 2.0), "07-strip", "0 to 2 radii apart"
 )
 
 # %% [markdown]
@@ -117,21 +107,15 @@ lesson.strip(
 
 # %%
 lesson.source(plain.chord)
-lesson.show(
-    curves(
-        lesson.size(480, 300),
-        a,
-        {
-            "chord": metaballs.chord(a**2) / metaballs.chord(np.zeros(1)),
-            "profile": metaballs.profile(a**2),
-            "10 x difference": 10
-            * (metaballs.profile(a**2) - metaballs.chord(a**2) / (944 / 945)),
-        },
-        y_range=(-0.1, 1.1),
-        names=("distance from the axis / R", ""),
-    ),
+chord = metaballs.chord(a**2) / (944 / 945)  # so that it is 1 on the axis
+lesson.plot(
+    a,
+    {"chord": chord, "profile": profile, "10 x difference": 10 * (profile - chord)},
     "07-footprint",
     "The chord integral against the profile, both 1 on the axis",
+    y_range=(-0.1, 1.1),
+    names=("distance from the axis / R", ""),
+    legend="top",
 )
 
 # %% [markdown]
@@ -139,7 +123,7 @@ lesson.show(
 #
 # * **Normalisation.** The paper divides by k = 748/405 pi R, which normalises nothing
 #   (E02), and says that the density at the centre is rho, which needs k = 1 (E03).
-#   refcloud takes the peak, 1; the volume integral is there by name.
+#   refcloud takes the peak, 1; `metaballs.integral` gives what a ball holds in all.
 # * **The Gaussian never ends.** Cut at R = 2 sigma it still is exp(-4) = 0.018: a faint
 #   edge, which light finds.
 #
@@ -147,7 +131,7 @@ lesson.show(
 #
 # 1. Show that f(1/2) = 1/2.
 # 2. How much of a ball of radius 1 and density 1 is there? Integrate over its volume.
-# 3. Where is the footprint's largest error, and how large is it?
+# 3. Where is the profile farthest from the footprint, and by how much?
 #
 # ## Solutions
 
@@ -160,7 +144,7 @@ r = (np.arange(10_000) + 0.5) / 10_000
 volume = np.sum(4 * np.pi * r**2 * metaballs.profile(r**2)) / 10_000
 assert abs(volume - metaballs.integral("wyvill", 3)) < 1e-7
 
-# 3: at a = 0.57, and 0.065 of the axis.
-off = metaballs.profile(a**2) - metaballs.chord(a**2) / (944 / 945)
+# 3: at a = 0.57, and 0.065 of what it is on the axis.
+off = profile - chord
 assert abs(a[off.argmax()] - 0.57) < 0.02
 assert abs(off.max() - 0.065) < 0.001

@@ -5,14 +5,13 @@
 #
 # OpenGL answers with two factors: one for what comes (the **source**), one for what is
 # there (the **destination**). `glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA)` is how
-# every cloud of this course is drawn.
+# every ball of this course is drawn.
 
 # %%
 from typing import Annotated, Literal
 
 import numpy as np
 from lesson import Lesson
-from plots import curves
 
 import refcloud as rc
 from refcloud import raster
@@ -46,12 +45,8 @@ def picture(
     )
     colours = [0.95, 0.6, 0.35], [0.9, 0.9, 0.9], [0.35, 0.6, 0.9]
     for k, colour in enumerate(colours):
-        x, y, radius = (
-            (0.34 + 0.16 * k) * width,
-            (0.42 + 0.1 * (k % 2)) * height,
-            height / 3,
-        )
-        ball = raster.patch(x, y, radius, width, height)
+        x, y = (0.34 + 0.16 * k) * width, (0.42 + 0.1 * (k % 2)) * height
+        ball = raster.patch(x, y, height / 3, width, height)
         if ball is None:
             continue
         weight = raster.footprint(ball.q)
@@ -118,17 +113,13 @@ names: tuple[Literal["RGBA64F", "RGBA8"], ...] = ("RGBA64F", "RGBA8")
 formats = {
     name: 1.0 - raster.seen_through_layers(1 / 255, 1000, format=name) for name in names
 }
-lesson.show(
-    curves(
-        lesson.size(480, 300),
-        layers,
-        formats,
-        y_range=(0.0, 1.0),
-        names=("layers of alpha 1/255", "what they cover"),
-        legend="bottom",
-    ),
+lesson.plot(
+    layers,
+    formats,
     "09-stall",
     "What a thousand thin layers cover, in float64 and in 8 bits",
+    y_range=(0.0, 1.0),
+    names=("layers of alpha 1/255", "what they cover"),
 )
 
 # %% [markdown]

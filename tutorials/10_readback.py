@@ -53,10 +53,8 @@ def picture(
     if drawn < 1.0:
         k = view.order[count]
         pixels = np.arange(side) + 0.5
-        away = (
-            np.hypot(pixels - view.x[k], pixels[:, None] - view.y[k]) - view.radius[k]
-        )
-        ring = np.clip(1.8 - np.abs(away), 0.0, 1.0)[..., None]
+        away = np.hypot(pixels - view.x[k], pixels[:, None] - view.y[k])
+        ring = np.clip(1.8 - np.abs(away - view.radius[k]), 0.0, 1.0)[..., None]
         light = light + ring * (np.array([0.95, 0.35, 0.05]) - light)
     return grey(light)
 
@@ -90,11 +88,7 @@ lesson.source(carried_literally)
 
 # %%
 lesson.strip(
-    picture,
-    "drawn",
-    (0.05, 0.2, 0.4, 0.7, 1.0),
-    "10-strip",
-    "The pass, ball after ball",
+    picture, "drawn", (0.05, 0.2, 0.4, 0.7, 1.0), "10-strip", "The pass, ball by ball"
 )
 
 # %% [markdown]
@@ -112,10 +106,7 @@ def seen(lit: rc.LitMetaballs) -> rc.Picture:
 lit = rc.sunward(BALLS, (SUN,), medium=rc.Medium(1.2), look="cumulus")
 everywhere = replace(lit, light=np.broadcast_to(SUN.irradiance, lit.light.shape))
 lesson.row(
-    {
-        "the full sun at every ball": lambda: seen(everywhere),
-        "pass 1": lambda: seen(lit),
-    },
+    {"the full sun": lambda: seen(everywhere), "pass 1": lambda: seen(lit)},
     "10-light",
     "The same balls without pass 1 and with it",
     columns=2,
@@ -134,8 +125,7 @@ lesson.row(
 #
 # ## Exercises
 #
-# 1. What does the second of two balls get, exactly behind the first, if nothing is
-#    handed on?
+# 1. What reaches a ball exactly behind another that hands on nothing?
 # 2. Cut a ball into two of half the depth. Does what comes out behind stay the same?
 # 3. From which depth on does equation 26 make light, with albedo 0.9?
 #
@@ -151,8 +141,7 @@ dark = rc.Look(forward=0.0, readback="disc", sky_light=[0] * 3, ground_light=[0]
 second = rc.sunward(two, (down,), medium=rc.Medium(2.0), look=dark).light[0, 1, 0]
 assert np.exp(-2.0) < second < 1.0
 
-# 2: with the split rule T + g = exp(-(1-k) tau), which multiplies: yes. That is its
-# point.
+# 2: yes with the split rule: T + g = exp(-(1-k) tau), and exponentials multiply.
 both, half = (np.exp(-tau) + scattered_split(tau, 0.7) for tau in (3.0, 1.5))
 assert abs(both - half**2) < 1e-15
 

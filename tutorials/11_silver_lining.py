@@ -13,7 +13,6 @@ from typing import Annotated, Literal
 
 import numpy as np
 from lesson import Lesson
-from plots import curves
 
 import refcloud as rc
 from refcloud import optics
@@ -89,23 +88,19 @@ lesson.source(rc.lighting.eyeward_literal)
 # %%
 lesson.strip(picture, "g", (-0.3, 0.0, 0.3, 0.6, 0.8), "11-strip", "g from -0.3 to 0.8")
 cosines = np.linspace(-1, 1, 201)
-lesson.show(
-    curves(
-        lesson.size(480, 300),
-        cosines,
-        {
-            "Rayleigh, eq 25": 4 * np.pi * optics.rayleigh(cosines),
-            "g = 0.3": 4 * np.pi * optics.henyey_greenstein(cosines, 0.3),
-            "g = 0.6": 4 * np.pi * optics.henyey_greenstein(cosines, 0.6),
-            "isotropic": np.ones_like(cosines),
-        },
-        y_range=(0.05, 20.0),
-        names=("cos theta, forward is 1", "4 pi p"),
-        log=(False, True),
-        legend="bottom",
-    ),
+lesson.plot(
+    cosines,
+    {
+        "Rayleigh, eq 25": 4 * np.pi * optics.rayleigh(cosines),
+        "g = 0.3": 4 * np.pi * optics.henyey_greenstein(cosines, 0.3),
+        "g = 0.6": 4 * np.pi * optics.henyey_greenstein(cosines, 0.6),
+        "isotropic": np.ones_like(cosines),
+    },
     "11-phases",
     "Phase functions: all have the mean 1, only g makes a forward peak",
+    y_range=(0.05, 20.0),
+    names=("cos theta, forward is 1", "4 pi p"),
+    log=(False, True),
 )
 
 # %% [markdown]

@@ -12,7 +12,6 @@ from typing import Annotated
 
 import numpy as np
 from lesson import Lesson
-from plots import curves
 
 import refcloud as rc
 from refcloud import march
@@ -92,48 +91,32 @@ lesson.strip(picture, "sun_height", (-0.3, 0.3, 2.0), "13-sun", "The sun climbs"
 # %% [markdown]
 # ## Where this breaks
 #
-# **Steps.** A step that jumps over a thin wisp has not seen it. How many are enough?
-# Ask the exact integral, which cuts every ray where it crosses a cell's face, so that
-# each piece is a polynomial. (It is what `tolerance=0` does.) Document D adds `tau` of
-# a step where `1 - exp(-tau)` belongs (E38): Euler's sum makes light where steps are
-# deep.
+# A step that jumps over a thin wisp has not seen it. How many are enough? Ask the exact
+# integral (it is what `tolerance=0` draws), which cuts every ray where it crosses a
+# cell's face, so that each piece is a polynomial. Document D adds `tau` of a step where
+# `1 - exp(-tau)` belongs (E38): Euler's sum makes light where steps are deep.
 
 # %%
-width, height = 16, 12
-camera = rc.Camera([0, -6, 112], [0, 14, 0], width=width, height=height)
-origins, directions = rays(camera)
-sun, medium = rc.Sun([-0.6, 0.6, 0.4]), rc.Medium(0.5, 1.0, 0.3, "hg")
-exact, _ = march.integrate(CLOUD, origins, directions, suns=sun, medium=medium)
-rates = np.array([4, 8, 16, 32] if lesson.quick else [4, 8, 16, 32, 64, 128])
-errors = {}
-for segment in ("euler", "beer"):
-    errors[segment] = [
-        np.abs(
-            march.march_by_steps(
-                CLOUD,
-                origins,
-                directions,
-                suns=sun,
-                medium=medium,
-                sample_rate=rate,
-                sun_sample_rate=rate,
-                segment=segment,
-            )[0]
-            - exact
-        ).max()
-        for rate in rates.tolist()
-    ]
-lesson.show(
-    curves(
-        lesson.size(480, 300),
-        rates,
-        errors | {"one code of 255": np.full(len(rates), 1 / 255)},
-        y_range=(1e-3, 30.0),
-        names=("steps to the eye, and to the sun at each", "largest error"),
-        log=(True, True),
-    ),
+seen = rays(rc.Camera([0, -6, 112], [0, 14, 0], width=16, height=12))
+scene = {"suns": rc.Sun([-0.6, 0.6, 0.4]), "medium": rc.Medium(0.5, 1.0, 0.3, "hg")}
+exact, _ = march.integrate(CLOUD, *seen, **scene)
+rates = [4, 8, 16, 32] if lesson.quick else [4, 8, 16, 32, 64, 128]
+errors: dict[str, list[float]] = {"euler": [], "beer": []}
+for segment, found in errors.items():
+    for rate in rates:
+        steps = {"sample_rate": rate, "sun_sample_rate": rate, "segment": segment}
+        light, _ = march.march_by_steps(CLOUD, *seen, **scene, **steps)
+        found.append(np.abs(light - exact).max())
+errors["one code of 255"] = [1 / 255] * len(rates)
+lesson.plot(
+    rates,
+    errors,
     "13-steps",
     "The largest error of 192 pixels against the number of steps",
+    y_range=(1e-3, 30.0),
+    names=("steps to the eye, and to the sun at each", "largest error"),
+    log=(True, True),
+    legend="top",
 )
 
 # %% [markdown]
@@ -147,16 +130,10 @@ lesson.show(
 # ## Solutions
 
 # %%
-# 1: the way in and out is 2 t, so the integral of exp(-2 t) gives (1 - exp(-2 tau)) /
-# 2.
+# 1: light goes t in and t out: the integral of exp(-2 t) is (1 - exp(-2 tau)) / 2.
 slab = rc.VoxelGrid(np.ones((2, 2, 2)), [-50, -50, 0], [50, 50, 1])
-L, T = march.integrate(
-    slab,
-    [0.0, 0, 9],
-    [[0.0, 0, -1]],
-    suns=rc.Sun([0, 0, 1]),
-    medium=rc.Medium(2, phase="isotropic"),
-)
+scene = {"suns": rc.Sun([0, 0, 1]), "medium": rc.Medium(2, phase="isotropic")}
+L, T = march.integrate(slab, [0.0, 0, 9], [[0.0, 0, -1]], **scene)
 assert abs(L[0, 0] - (1 - np.exp(-4.0)) / 2) < 1e-6
 
 # 2: depths add, so transmittances multiply.

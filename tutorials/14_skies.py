@@ -9,8 +9,10 @@
 
 # %%
 from dataclasses import replace
+from functools import partial
 from typing import Annotated
 
+import numpy as np
 from lesson import Lesson
 
 import refcloud as rc
@@ -26,7 +28,6 @@ def picture(
     threshold: Annotated[float, Range(-0.5, 0.5, "noise")] = 0.0,
     opacity_slope: Annotated[float, Range(0.0, 20.0, "1 / noise")] = 6.0,
     light_slope: Annotated[float, Range(-4.0, 4.0, "radiance / noise")] = -1.1,
-    time: Annotated[float, Range(0.0, 20.0)] = 0.0,
 ) -> rc.Picture:
     """Look up to a plane of clouds, a sum of simplex noise at every pixel.
 
@@ -38,13 +39,11 @@ def picture(
         How fast clouds become solid above it.
     light_slope
         How their light changes with the noise; negative is darker in the middle.
-    time
-        A coordinate of the noise: the clouds change without moving on.
     """
     width, height = lesson.size(480, 320)
     cover = sky.Cover(threshold, opacity_slope, 1.05, light_slope, 0.35)
     plane = replace(shader.PLANE, cover=cover)
-    return shader.plane_sky(Model({}), View(width, height, time=time), of=plane)
+    return shader.plane_sky(Model({}), View(width, height), of=plane)
 
 
 lesson.show(picture, "14-plane", "Document S: a plane of clouds, six octaves of noise")
@@ -71,23 +70,17 @@ lesson.source(plain.cloud_cover, sky.cloud_cover)
 # It sets how much of the sky is open; the slope of the light makes the mood.
 
 # %%
-lesson.strip(
-    picture,
-    "threshold",
-    (-0.25, -0.1, 0.0, 0.1, 0.2),
-    "14-strip",
-    "From an overcast sky to a few clouds",
-)
-lesson.strip(
-    picture, "light_slope", (2.0, 0.0, -1.1, -2.5), "14-light", "Slopes of the light"
-)
+covers, slopes = (-0.25, -0.1, 0.0, 0.1, 0.2), (2.0, 0.0, -1.1, -2.5)
+lesson.strip(picture, "threshold", covers, "14-strip", "From overcast to a few clouds")
+lesson.strip(picture, "light_slope", slopes, "14-light", "Slopes of the light")
 
 # %% [markdown]
 # ## Which surface?
 #
-# A plane, a sphere whose noise is a function of space, a half-sphere with a texture, a
-# sphere with a texture wrapped around it. The last one **pinches at its pole**, and
-# made the authors of document S give it up.
+# From the left: a plane, a sphere whose noise is a function of space, a half-sphere
+# with a texture, and a sphere with a texture wrapped around it. The last one **pinches
+# at its pole**, so document S gave it up. The labels are names of scenes:
+# `refcloud render shader-dome -o dome.png` draws one.
 
 
 # %%
@@ -97,17 +90,9 @@ def scene(name: str) -> rc.Picture:
     return rc.render(name, width=width, height=height)
 
 
-surfaces = {
-    "plane": "shader-c",
-    "space on a sphere": "shader-b",
-    "half-sphere": "shader-dome",
-    "wrapped sphere": "shader-poles",
-}
-lesson.row(
-    {label: (lambda name=name: scene(name)) for label, name in surfaces.items()},
-    "14-surfaces",
-    "Four surfaces for a sky; the wrapped one pinches at its pole",
-    columns=4,
+surfaces = ("shader-c", "shader-b", "shader-dome", "shader-poles")
+lesson.strip(
+    scene, "name", surfaces, "14-surfaces", "Four surfaces; the last pinches at a pole"
 )
 
 # %% [markdown]
@@ -118,21 +103,17 @@ lesson.row(
 lesson.source(plain_sheet.exponential_filter, noise.exponential_filter)
 steps = ("noise", "smoothed", "interpolated", "octaves", "filtered")
 lesson.row(
-    {step: (lambda step=step: scene(f"simple-{step}")) for step in steps},
+    {step: partial(scene, f"simple-{step}") for step in steps},
     "14-sheet",
     "Document C, step by step: from random numbers to a sheet of clouds",
 )
-sprites = {
-    "puff": "shader-d",
-    "distorted sphere": "shader-e",
-    "particles": "shader-particles",
-    "a layer, lit": "shader-lit",
-}
-lesson.row(
-    {label: (lambda name=name: scene(name)) for label, name in sprites.items()},
+others = ("shader-d", "shader-e", "shader-particles", "shader-lit")
+lesson.strip(
+    scene,
+    "name",
+    others,
     "14-sprites",
     "Document S's other tries: a puff, a soap bubble, particles, a lit layer",
-    columns=4,
 )
 
 # %% [markdown]
@@ -140,10 +121,10 @@ lesson.row(
 #
 # * Fly through it: a sheet has no inside. No light goes from one cloud to another.
 # * "Transparency" in document S must mean opacity; as printed, clouds are clear where
-#   they should be solid (E37). Its fog grows with distance only when the sign of the
-#   exponent is mended (E29).
-# * Sprites are cheap one by one. A field of them is a thousand blends of large squares:
-#   document S found it slow, and so is the picture above.
+#   they should be solid (E37). Its fog subtracts the distance in the exponent, so that
+#   it would clear far away; multiplied by the distance, it thickens (E29).
+# * Sprites and particles are cheap one by one. A field of them is thousands of blends,
+#   most of them over each other: document S found that slow.
 #
 # ## Exercises
 #
@@ -157,8 +138,6 @@ lesson.row(
 #    every octave reads it modulo 32.
 
 # %%
-import numpy as np
-
 # 1: 0.1 + 1/4.
 _, alpha = sky.cloud_cover([0.34, 0.35], sky.Cover(threshold=0.1, opacity_slope=4.0))
 assert alpha[0] < 0.97

@@ -9,12 +9,10 @@
 # skip work that it can bound or check.
 
 # %%
-import time
 from typing import Annotated
 
 import numpy as np
 from lesson import Lesson
-from plots import curves
 from sheets import Sheet, grey
 
 import refcloud as rc
@@ -47,11 +45,11 @@ def picture(
     gain
         Factor on the difference.
     """
-    off = np.abs(marched(tolerance).linear - EXACT[lesson.size(320, 240)].linear)
+    off = np.abs(marched(tolerance).linear - EXACT.linear)
     return grey(np.sqrt(np.minimum(gain * off.max(axis=-1), 1.0)))
 
 
-EXACT = {lesson.size(320, 240): marched(0.0)}
+EXACT = marched(0.0)
 lesson.show(picture, "15-error", "The error of a march at tolerance 0.05, times 20")
 
 # %% [markdown]
@@ -80,35 +78,28 @@ lesson.source(plain.largest_difference, largest_difference)
 
 # %%
 tolerances = (0.005, 0.05, 0.2) if lesson.quick else (0.002, 0.005, 0.02, 0.05, 0.2)
-exact = EXACT[lesson.size(320, 240)]
-errors, seconds = [], []
+errors = []
 for tolerance in tolerances:
-    start = time.process_time()
-    drawn = marched(tolerance)
-    seconds.append(time.process_time() - start)
-    errors.append(max(largest_difference(drawn.linear, exact.linear), 1e-6))
-    print(f"{tolerance:5.3f}: {seconds[-1]:.2f} s, largest error {errors[-1]:.5f}")
+    drawn = lesson.timed(f"tolerance {tolerance:g}", marched, tolerance)
+    errors.append(max(largest_difference(drawn.linear, EXACT.linear), 1e-6))
+    print(f"largest error {errors[-1]:.5f}")
+    lesson.told(drawn.skipped)
     assert errors[-1] <= tolerance
-lesson.told(drawn.skipped)
-lesson.show(
-    curves(
-        lesson.size(480, 300),
-        tolerances,
-        {"largest error": errors, "the promise": tolerances},
-        y_range=(1e-4, 1.0),
-        names=("tolerance", ""),
-        log=(True, True),
-        legend="bottom",
-    ),
+lesson.plot(
+    tolerances,
+    {"largest error": errors, "the promise": tolerances},
     "15-promise",
     "The largest error stays below what was allowed",
+    y_range=(1e-4, 1.0),
+    names=("tolerance", ""),
+    log=(True, True),
 )
-cells = {
-    f"tolerance {t:g}": (lambda t=t: rc.Picture(marched(t).linear))
-    for t in (0.0, 0.01, 0.03, 0.1, 0.3)
-}
-lesson.row(
-    cells, "15-strip", "Five tolerances: the pictures look alike, as they should"
+lesson.strip(
+    marched,
+    "tolerance",
+    (0.0, 0.01, 0.03, 0.1, 0.3),
+    "15-strip",
+    "Five tolerances: the pictures look alike, as they should",
 )
 
 # %% [markdown]

@@ -72,9 +72,7 @@ lesson.source(plain.stored, raster.stored)
 
 # %%
 formats: tuple[Format, ...] = ("RGBA8", "SRGB8_ALPHA8", "RGBA16F", "RGBA32F", "RGBA64F")
-lesson.strip(
-    picture, "format", formats, "16-strip", "The same 400 balls in five formats"
-)
+lesson.strip(picture, "format", formats, "16-strip", "400 balls in five formats")
 
 # %% [markdown]
 # ## The two passes on OpenGL
@@ -99,8 +97,7 @@ def on_opengl(size: tuple[int, int]) -> np.ndarray:
 def drawn_by(backend: Backend, size: tuple[int, int]) -> np.ndarray:
     """Draw a cloud by numpy or by OpenGL, as codes without a dither."""
     camera = rc.Camera([3, -4, 128], [3, 14, 0], width=size[0], height=size[1])
-    medium = rc.Medium(1.2)
-    shown = rc.render(BALLS, camera=camera, medium=medium, backend=backend)
+    shown = rc.render(BALLS, camera=camera, medium=rc.Medium(1.2), backend=backend)
     return shown.codes(dither=False)
 
 
@@ -113,9 +110,7 @@ lesson.row(
     {
         "numpy, float64": Sheet(by_numpy),
         "OpenGL, float32": Sheet(by_opengl),
-        "difference x 100": grey(
-            np.abs(by_numpy.astype(int) - by_opengl), 0.0, 255.0 / 100.0
-        ),
+        "difference x 100": grey(np.abs(by_numpy.astype(int) - by_opengl), 0.0, 2.55),
     },
     "16-same",
     "numpy, OpenGL, and their difference times 100: nearly nothing",

@@ -3,23 +3,21 @@
 #
 # *Why are real clouds so white, and ours so grey?*
 #
-# Because light that a droplet scatters meets the next droplet, and the next. Counted
-# once, most of it is thrown away: a thick cloud shows a sixth of its light. The rest
-# can be solved.
+# Because scattered light meets the next droplet, and the next. Where only the first
+# meeting counts, a thick cloud shows a sixth of its light. The rest can be solved.
 
 # %%
 from typing import Annotated, Literal
 
 import numpy as np
 from lesson import Lesson
-from plots import curves
 
 import refcloud as rc
 from refcloud import march, transport
 from refcloud.conventions import Range
 
 lesson = Lesson()
-CLOUD = rc.generate(seed=12, voxel=6.0 if lesson.quick else 2.0)
+CLOUD = rc.generate(seed=12, voxel=8.0 if lesson.quick else 2.0)
 
 
 def picture(
@@ -27,7 +25,6 @@ def picture(
     scattering: Literal["single", "multiple"] = "multiple",
     sigma_t: Annotated[float, Range(0.05, 4.0, "1 / scene unit")] = 0.8,
     albedo: Annotated[float, Range(0.0, 1.0)] = 1.0,
-    g: Annotated[float, Range(-0.9, 0.9)] = 0.6,
 ) -> rc.Picture:
     """March a cloud with light of one order or of every order of scattering.
 
@@ -39,8 +36,6 @@ def picture(
         Extinction per unit of length where the density is 1.
     albedo
         Share of the light that survives each meeting.
-    g
-        Mean cosine of the scattering.
     """
     width, height = lesson.size(400, 300)
     camera = rc.Camera([0, -10, 128], [1, 17, 0], width=width, height=height)
@@ -48,7 +43,7 @@ def picture(
         CLOUD,
         camera=camera,
         suns=rc.Sun([-0.62, 0.62, 0.42], [6.3, 6.0, 5.6]),
-        medium=rc.Medium(sigma_t, albedo, g, "hg"),
+        medium=rc.Medium(sigma_t, albedo, 0.6, "hg"),
         scattering=scattering,
         ambient=[0.2, 0.28, 0.4],
         tolerance=4 / 255,
@@ -72,22 +67,22 @@ lesson.row(
 # $$ L(x, \omega) = \int_0^\infty e^{-\tau(x, x - t\omega)} \, \sigma_t \, a
 # \int_{S^2} p(\omega, \omega') \, L(x - t\omega, \omega') \, d\omega' \, dt $$
 #
-# The plain way is to follow one photon at a time, and to throw dice: unbiased, noisy.
+# The plain way follows one path of light at a time, from the eye back, and throws dice
+# for every turn: unbiased, and noisy.
 
 # %%
 from refcloud.plain import paths as plain
+from refcloud.plain import sweep as plain_sweep
 
 lesson.source(plain.walk)
 
 # %% [markdown]
-# The array way solves it once for all eyes: the sphere becomes a few dozen directions,
-# and each **sweep** carries light along all of them through the whole grid. Light that
-# comes out goes back in, until nothing changes any more.
+# The other way solves it once for all eyes: the sphere becomes a few dozen directions,
+# and each **sweep** carries light along all of them through the whole grid. What voxels
+# then scatter feeds the next sweep, until nothing changes. For one voxel, and for all:
 
 # %%
-from refcloud.plain import sweep as plain_sweep
-
-lesson.source(plain_sweep.sweep)
+lesson.source(plain_sweep.sweep, transport.sweep)
 
 # %% [markdown]
 # ## The knob: albedo
@@ -102,40 +97,27 @@ lesson.strip(
 # %% [markdown]
 # ## How many meetings?
 #
-# The photons can count. Here is what paths of at most n scatterings show, in the middle
+# The paths can count. Here is what paths of at most n scatterings show, in the middle
 # of a slab of optical depth 12, against n: single scattering is the first point.
 
 # %%
 slab = rc.VoxelGrid(np.ones((4, 4, 4)), [-40, -40, 0], [40, 40, 1])
-sun, medium = rc.Sun([0.0, 0.5, 1.0]), rc.Medium(12.0, 1.0, 0.6, "hg")
-orders = np.array([1, 2, 4, 8, 16, 32, 64])
-shown = [
-    transport.trace_paths(
-        slab,
-        [[0.0, 0.0, 9.0]],
-        [[0.0, 0.0, -1.0]],
-        suns=sun,
-        medium=medium,
-        paths=512 if lesson.quick else 16384,
-        orders=n,
-    ).radiance[0, 0]
-    for n in orders.tolist()
-]
-once, _ = march.integrate(
-    slab, [0.0, 0.0, 9.0], [[0.0, 0.0, -1.0]], suns=sun, medium=medium
-)
-lesson.show(
-    curves(
-        lesson.size(480, 300),
-        orders,
-        {"paths": shown, "exact, once": np.full(len(orders), once[0, 0])},
-        y_range=(0.0, 3.0),
-        names=("scatterings at most", "radiance"),
-        log=(True, False),
-        legend="bottom",
-    ),
+ray = [[0.0, 0.0, 9.0]], [[0.0, 0.0, -1.0]]
+scene = {"suns": rc.Sun([0.0, 0.5, 1.0]), "medium": rc.Medium(12.0, 1.0, 0.6, "hg")}
+orders, paths = [1, 2, 4, 8, 16, 32, 64], 512 if lesson.quick else 16384
+shown = []
+for n in orders:
+    traced = transport.trace_paths(slab, *ray, paths=paths, orders=n, **scene)
+    shown.append(traced.radiance[0, 0])
+once, _ = march.integrate(slab, *ray, **scene)
+lesson.plot(
+    orders,
+    {"paths": shown, "exact, once": [once[0, 0]] * len(orders)},
     "17-orders",
     "What a slab shows against the number of scatterings that are counted",
+    y_range=(0.0, 3.0),
+    names=("scatterings at most", "radiance"),
+    log=(True, False),
 )
 
 # %% [markdown]
@@ -143,16 +125,14 @@ lesson.show(
 #
 # * **No exact method.** The solver's finest plan is the measure; its own distance from
 #   unbiased paths grows with the optical depth of one voxel: 0.5 % at 0.25, 10 % at 5.
-# * **Tricks.** Paper M hands light forward (tutorial 10), "Beer-powder" darkens edges.
-#   They are cheap, and tuned to one cloud: on another they are off by a quarter to four
-#   fifths.
-# * Directions are few. A sharp forward peak is cut off and treated as not scattered at
+# * **Tricks.** Paper M hands light forward (tutorial 10), "Beer-powder" darkens edges:
+#   cheap, tuned to one cloud, and off by a quarter to four fifths on another.
+# * **Few directions.** A sharp forward peak is cut off and treated as not scattered at
 #   all (delta-M), or a few dozen directions would miss it.
 #
 # ## Exercises
 #
-# 1. White furnace: put a cloud of albedo 1 into light that comes from everywhere alike.
-#    What is seen?
+# 1. What does a cloud of albedo 1 show in light that comes from everywhere alike?
 # 2. At albedo 0.99, how much is left after 100 meetings?
 # 3. Why is the underside of a real cloud dark, if nothing is absorbed?
 #
@@ -162,12 +142,9 @@ lesson.show(
 
 # %%
 # 1: nothing: the cloud vanishes. What it takes out of a ray, 1 - exp(-3), it puts back.
-how = {"suns": (), "medium": rc.Medium(3.0, 1.0, 0.5, "hg"), "sky": [1.0] * 3}
-furnace = transport.trace_paths(
-    slab, [[0.0, 0.0, 9.0]], [[0.0, 0.0, -1.0]], ground=[1.0] * 3, paths=256, **how
-)
-missing = 1.0 - np.exp(-3.0) - furnace.radiance[0, 0]
-assert abs(missing) < 5 * furnace.error[0, 0]
+scene = {"suns": (), "medium": rc.Medium(3.0, 1.0, 0.5, "hg"), "sky": [1.0] * 3}
+furnace = transport.trace_paths(slab, *ray, ground=[1.0] * 3, paths=256, **scene)
+assert abs(1.0 - np.exp(-3.0) - furnace.radiance[0, 0]) < 5 * furnace.error[0, 0]
 
 # 2: a third.
 assert abs(0.99**100 - 0.366) < 1e-3

@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from plots import curves
 from sheets import Sheet, sheet_of, side_by_side
 
 from refcloud import Picture
@@ -150,6 +151,29 @@ class Lesson:
             self._columns = 0
         sheet = side_by_side(panels, columns=columns, labels=not self.quick)
         return self._store(sheet, name)
+
+    def plot(
+        self, x: Any, lines: Mapping[str, Any], name: str, caption: str, **how: Any
+    ) -> Any:
+        """Show curves over one axis.
+
+        Parameters
+        ----------
+        x, lines
+            Where the curves are known, and their values by name, each of shape (N,).
+        name, caption
+            Of the file, and what it shows.
+        how
+            The range upward and the axes, as `plots.curves` takes them.
+        """
+        return self._store(curves(self.size(480, 300), x, lines, **how), name)
+
+    def timed(self, name: str, make: Callable[..., Any], *of: Any, **how: Any) -> Any:
+        """Call a function, print what it took of one core, and give what it gave."""
+        started = time.process_time()
+        made = make(*of, **how)
+        print(f"{name:16} {time.process_time() - started:.2f} s")
+        return made
 
     def source(self, *functions: Callable[..., Any]) -> None:
         """Tell where the library's code stands that a page shows here."""

@@ -18,7 +18,7 @@ from lesson import HERE, PICTURES, source_of
 
 QUICK = PICTURES / "quick"  # the same, small, as the tests draw them
 CELL = re.compile(r"^# %%(.*)$", re.MULTILINE)
-DRAWS = ("show", "strip", "row")
+DRAWS = ("show", "strip", "row", "plot")
 SOLUTIONS = "## Solutions"
 
 

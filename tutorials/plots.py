@@ -25,7 +25,7 @@ def curves(
     marks: Mapping[str, tuple[Any, Any]] | None = None,
     names: tuple[str, str] = ("", ""),
     log: tuple[bool, bool] = (False, False),
-    legend: Literal["top", "bottom"] = "top",
+    legend: Literal["top", "bottom"] = "bottom",
 ) -> Sheet:
     """Draw curves over one axis, and points.
 

@@ -12,14 +12,21 @@ from __future__ import annotations
 import functools
 
 import numpy as np
+from numpy.typing import NDArray
 
-from refcloud.conventions import Skipped
-from refcloud.lighting.flat_tiles import Drawn, Flat, FlatTiles, exact_tiles
+from refcloud.conventions import Array, Skipped
+from refcloud.lighting.flat_tiles import (
+    Drawn,
+    Flat,
+    FlatTiles,
+    exact_tiles,
+    one_ball_a_pair,
+)
 from refcloud.noise import uniform
 from refcloud.raster import between
 from refcloud.raster.between import Samples, quarters, sampled
 from refcloud.raster.nodes import LEAST_RISE, nodes
-from refcloud.raster.quadratics import Floats, cancelling
+from refcloud.raster.quadratics import Floats
 from refcloud.raster.tile_lists import PIXELS, TileLists, Whole
 from refcloud.raster.tiles import pixel_places
 
@@ -34,6 +41,7 @@ OF_NODES = 1.0 / 8.0  # of what fewer places may change: tiles beside take some 
 LEAST_NODES, GUESS = 4.0 * LEAST_RISE, 0.15
 FEW = 10  # balls of a tile, to which filling it up costs more than drawing its pixels
 SAMPLE_TILES, SAMPLE_PIXELS = 32, 16  # 512 pixels are compared with the exact method
+TABLE = 256  # rows and columns of tiles after which the choice repeats itself
 SAMPLE_LEAST = 0.01  # what the sample itself may leave out behind an opaque front
 # The largest error of a picture over the largest of its sample: of float32, whose
 # errors are sums of many roundings; and between places, where they sit at a few rims.
@@ -68,9 +76,13 @@ def certified_tiles(
     share = most if most < 2.0 * MOST_FLOAT32 else MOST_FLOAT32
     # What rounding may change of one ball's opacity at the worst; the sample tells.
     digits = 4.0 * share / brightest
-    if most < 0.4 * LEAST_FLOAT32 or not _fits(flat, digits):
+    if most < 0.4 * LEAST_FLOAT32:
         return exact_tiles(lists, flat, least), []
-    work = _Work(lists, flat, digits, least, behind)
+    direct = flat.cancelling(np.float32, digits)
+    # It pays where most balls' opacities keep enough digits.
+    if any(2 * np.count_nonzero(balls) > len(balls) for balls in direct):
+        return exact_tiles(lists, flat, least), []
+    work = _Work(lists, flat, direct, least, behind)
     room = most - share  # for fewer places than pixels
     used = 0.0
     if room > 0.0:
@@ -109,20 +121,20 @@ class _Work:
     ----------
     lists, flat, least, behind
         As `certified_tiles`.
-    digits
-        What rounding may change of a ball's opacity.
+    direct
+        Balls to which float32 would be too rough, by group of channels.
     """
 
     def __init__(
         self,
         lists: TileLists,
         flat: Flat,
-        digits: float,
+        direct: list[NDArray[np.bool_]],
         least: float,
         behind: float,
     ) -> None:
         self.lists, self.least, self.behind = lists, least, behind
-        self.tiles = FlatTiles(lists, flat, np.float32, digits)
+        self.tiles = FlatTiles(lists, flat, np.float32, direct)
         count, groups = len(lists.count), len(flat.groups)
         self.drawn = Drawn(
             np.empty((count, 3, PIXELS), np.float32),
@@ -182,36 +194,49 @@ class _Work:
 
     def between_samples(self, most: float) -> None:
         """Fill tiles up from their samples, or draw quarters that have too few."""
-        at = sampled()[0]
         light, clear = self.drawn.light, self.drawn.clear
         others = np.ones(len(light), dtype=bool)
         others[self.sparse] = False
         others = np.flatnonzero(others)
-        self.samples.put(
-            self.lists, others, light[others][..., at], clear[others][..., at]
-        )
-        error = np.empty((2, 2, len(self.sparse)), np.float32)
+        known = (between.samples_among(pixels)[others] for pixels in (light, clear))
+        self.samples.put(self.lists, others, *known)
+        rough: list[tuple[Whole, Whole]] = []
         for begin in range(0, len(self.sparse), between.TOGETHER):
-            here = slice(begin, begin + between.TOGETHER)
-            some = self.sparse[here]
-            pixels, fourth = self.samples.between(self.lists, some)
+            some = self.sparse[begin : begin + between.TOGETHER]
+            around = self.samples.around(self.lists, some)
+            pixels = between.halfway(around)
             for channel in range(3):
                 light[some, channel] = pixels[channel]
             for group in range(clear.shape[1]):
                 clear[some, group] = pixels[3 + group]
-            error[..., here] = self._of_picture(*fourth)
-        error *= between.PER_FOURTH
-        self.saved_by_samples = len(self.sparse) * (PIXELS - len(at))
+            rough += self._rough_quarters(some, around, most)
+        self.saved_by_samples = len(self.sparse) * (PIXELS - between.SAMPLES**2)
         parts = quarters()
-        row, column, again = np.nonzero(error > most)
-        if len(again):
-            tile, part = self.sparse[again], 2 * row + column
+        if rough:
+            tile, part = (np.concatenate(each) for each in zip(*rough, strict=True))
             moved = parts.moved[0][part], parts.moved[1][part]
             found = self.tiles.at(parts.places, self.least, tile, moved)
             at, tile = parts.pixels[part][:, None], tile[:, None, None]
             light[tile, np.arange(3)[:, None], at] = found.light
             clear[tile, np.arange(clear.shape[1])[:, None], at] = found.clear
             self.saved_by_samples -= found.clear[:, 0].size
+
+    def _rough_quarters(
+        self, some: Whole, around: Floats, most: float
+    ) -> list[tuple[Whole, Whole]]:
+        """List tiles and quarters of theirs whose samples may be too few."""
+        fourth = between.fourth_differences(around)
+        # Most tiles are smooth everywhere: only of the others quarters are looked at.
+        error = self._of_picture(*self.samples.either(between.largest_of_tiles(fourth)))
+        rough = np.flatnonzero(error * between.PER_FOURTH > most)
+        if not len(rough):
+            return []
+        down, across = (self.samples.either(each[:, rough]) for each in fourth)
+        error = self._of_picture(
+            *map(between.largest_of_quarters, zip(down, across, strict=True))
+        )
+        row, column, tile = np.nonzero(error * between.PER_FOURTH > most)
+        return [(some[rough[tile]], 2 * row + column)]
 
     def _keep(self, which: Whole, light: Floats, clear: Floats, unseen: Whole) -> None:
         """Take pixels of some tiles into the picture."""
@@ -235,11 +260,12 @@ class _Work:
         -------
         The largest error where all pixels were drawn, and where fewer places were.
         """
-        keys = uniform(self.lists.row, self.lists.column, seed=0)
+        keys = _hashed_tiles()[self.lists.row % TABLE, self.lists.column % TABLE]
         some = np.sort(np.argsort(keys, kind="stable")[:SAMPLE_TILES])
         at = _hashed_pixels()
         x, y = pixel_places()
-        exact = FlatTiles(self.lists.chosen(some), flat).at((x[at], y[at]), least)
+        lists, theirs = one_ball_a_pair(self.lists.chosen(some), flat)
+        exact = FlatTiles(lists, theirs).at((x[at], y[at]), least)
         error = self._of_picture(
             np.abs(exact.light - self.drawn.light[some][..., at]).max(axis=(1, 2)),
             np.abs(exact.clear - self.drawn.clear[some][..., at]).max(axis=(1, 2)),
@@ -252,17 +278,14 @@ class _Work:
 
 
 @functools.cache
+def _hashed_tiles() -> Array:
+    """Give keys whose order chooses the tiles that are compared, by row and column."""
+    row, column = np.indices((TABLE, TABLE))
+    return uniform(row, column, seed=0)
+
+
+@functools.cache
 def _hashed_pixels() -> Whole:
     """Choose the pixels of a tile that are compared."""
     order = np.argsort(uniform(np.arange(PIXELS), seed=1), kind="stable")
     return order[:SAMPLE_PIXELS]
-
-
-def _fits(flat: Flat, most: float) -> bool:
-    """Tell whether float32 pays: where most balls' opacities keep enough digits."""
-    law = flat.look.transmittance
-    return all(
-        np.count_nonzero(cancelling(flat.discs, tau, law, most=most, dtype=np.float32))
-        <= 0.5 * len(tau)
-        for tau in flat.tau
-    )

@@ -9,14 +9,10 @@ import numpy as np
 
 from refcloud.camera import AnyCamera, Camera, axes
 from refcloud.checking import check_fields, checked
-from refcloud.conventions import WHOLE_SPHERE, Array, Colour, Positive
+from refcloud.conventions import Array, Colour, Positive
 from refcloud.extremes import refuse_bright, refuse_small
-from refcloud.lighting.depths import ball_depths
-from refcloud.lighting.lightview import handed_on
 from refcloud.lighting.lit import LitMetaballs
-from refcloud.lighting.look import Look
-from refcloud.metaballs import Metaballs
-from refcloud.optics import PHASE_MAN2003, Medium, coupling_man2003, phase
+from refcloud.optics import phase
 
 
 @dataclass(frozen=True)
@@ -65,52 +61,17 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     balls, medium = lit.balls, lit.medium
     colours = np.empty((len(balls.radii), len(lit.suns) + 1, 3))
     toward_eye = _toward_eye(balls.centers, camera)
-    gain = gain_of(balls, medium, lit.look)
     for s, sun in enumerate(lit.suns):
         # The sun's light travels along -direction and leaves toward the eye.
         x, y, z = toward_eye.T
         a, b, c = sun.direction
         cos_theta = np.clip(-(x * a + y * b + z * c), -1.0, 1.0)
         scattered = phase(medium, cos_theta)[:, None] * medium.albedo_rgb
-        colours[:, s] = scattered * lit.light[s] * gain
+        colours[:, s] = scattered * lit.light[s] * lit.gain
         if lit.glow is not None:
             colours[:, s] += lit.glow[s]
     colours[:, -1] = medium.albedo_rgb * lit.ambient  # what is absorbed is not seen
     return colours
-
-
-def gain_of(balls: Metaballs, medium: Medium, look: Look) -> Array:
-    """Give what the scattering rule puts on top of albedo times phase, unchecked.
-
-    Parameters
-    ----------
-    balls, medium, look
-        As `LitMetaballs` holds them.
-
-    Returns
-    -------
-    Shape (N, 3), at least 0.
-    """
-    gain = np.ones((len(balls.radii), 3))
-    if look.scattering == "split":
-        return gain
-    keys = zip(medium.albedo_rgb.tolist(), medium.sigma_t_rgb.tolist(), strict=True)
-    found: dict[tuple[float, float], Array] = {}  # of a grey medium only one
-    for channel, key in enumerate(keys):
-        if key not in found:
-            found[key] = _gain_man2003(ball_depths(balls, key[1], look), key[0], look)
-        gain[:, channel] = found[key]
-    return gain * (look.solid_angle / WHOLE_SPHERE)
-
-
-def _gain_man2003(tau: Array, albedo: float, look: Look) -> Array:
-    """Give depth as eq 26 counts it, held where pass 1 holds it, over the opacity."""
-    kappa = coupling_man2003(albedo, PHASE_MAN2003, solid_angle=look.solid_angle)
-    held = handed_on(look, albedo, 0.0)(tau)
-    effective = np.divide(held, kappa, out=np.array(tau), where=kappa > 0.0)
-    opacity = -np.expm1(-tau)
-    thin = opacity <= 0.0
-    return np.where(thin, 1.0, effective / np.where(thin, 1.0, opacity))
 
 
 def _toward_eye(centers: Array, camera: AnyCamera) -> Array:

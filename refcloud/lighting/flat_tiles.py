@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.lighting.look import Look
@@ -40,6 +42,13 @@ class Flat:
     groups: Sequence[Sequence[int]]
     look: Look
 
+    def cancelling(self, dtype: type, most: float) -> list[NDArray[np.bool_]]:
+        """Tell by group which balls' opacities rounding would change by too much."""
+        law = self.look.transmittance
+        return [
+            cancelling(self.discs, tau, law, most=most, dtype=dtype) for tau in self.tau
+        ]
+
 
 class Drawn(NamedTuple):
     """What was drawn of some tiles.
@@ -66,12 +75,28 @@ def flat_balls(seen: Seen, drawn: Whole) -> Flat:
     """Collect what tiles need of the balls that are drawn, near to far."""
     groups = seen.channel_groups()
     return Flat(
-        Discs(seen.x[drawn], seen.y[drawn], seen.radius[drawn]),
-        [seen.tau[channels[0]][drawn] for channels in groups],
-        seen.flat_colours()[drawn],
+        Discs(seen.x.take(drawn), seen.y.take(drawn), seen.radius.take(drawn)),
+        [seen.tau[channels[0]].take(drawn) for channels in groups],
+        seen.flat_colours().take(drawn, axis=0),
         groups,
         seen.lit.look,
     )
+
+
+def one_ball_a_pair(lists: TileLists, flat: Flat) -> tuple[TileLists, Flat]:
+    """Give a few tiles' lists and their balls alone, one for each pair.
+
+    What is computed for each ball then costs as much as these tiles have pairs, however
+    many balls the picture has.
+    """
+    ball, discs = lists.ball, flat.discs
+    theirs = dataclasses.replace(
+        flat,
+        discs=Discs(discs.x.take(ball), discs.y.take(ball), discs.radius.take(ball)),
+        tau=[tau.take(ball) for tau in flat.tau],
+        colours=flat.colours.take(ball, axis=0),
+    )
+    return dataclasses.replace(lists, ball=np.arange(len(ball))), theirs
 
 
 class FlatTiles:
@@ -83,8 +108,9 @@ class FlatTiles:
         The tiles' lists and the balls.
     dtype
         As `Compositor`.
-    most
-        Of a ball's opacity: what rounding may change.
+    direct
+        By group of channels, the balls whose places are measured one by one, as
+        `cancelling` tells them; None for those of float64.
     """
 
     def __init__(
@@ -92,10 +118,10 @@ class FlatTiles:
         lists: TileLists,
         flat: Flat,
         dtype: type = np.float64,
-        most: float = EXACT,
+        direct: Sequence[NDArray[np.bool_]] | None = None,
     ) -> None:
         self.lists, self.groups, self.dtype = lists, flat.groups, dtype
-        law = flat.look.transmittance
+        measured = flat.cancelling(dtype, EXACT) if direct is None else direct
         self.compositors = [
             Compositor(
                 lists,
@@ -103,11 +129,13 @@ class FlatTiles:
                 tau,
                 flat.colours[:, channels],
                 name=flat.look.footprint,
-                law=law,
+                law=flat.look.transmittance,
                 dtype=dtype,
-                direct=cancelling(flat.discs, tau, law, most=most, dtype=dtype),
+                direct=balls,
             )
-            for tau, channels in zip(flat.tau, flat.groups, strict=True)
+            for tau, channels, balls in zip(
+                flat.tau, flat.groups, measured, strict=True
+            )
         ]
 
     def at(

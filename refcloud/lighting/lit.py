@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Annotated
 
 from refcloud.checking import check_fields
 from refcloud.conventions import Array, Range, Shape, Skipped
+from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.gain import gain_of
 from refcloud.lighting.look import Look
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
@@ -63,3 +66,16 @@ class LitMetaballs:
                 f"glow: expected shape {self.light.shape}, that of light,"
                 f" got {self.glow.shape}"
             )
+
+    # What no eye changes is computed for the first one and kept for all others (L15).
+
+    @functools.cached_property
+    def gain(self) -> Array:
+        """What the scattering rule puts on top of albedo times phase, shape (N, 3)."""
+        return gain_of(self.balls, self.medium, self.look)
+
+    @functools.cached_property
+    def depths(self) -> dict[float, Array]:
+        """Each ball's optical depth on its axis, shape (N,), by extinction."""
+        extinctions = dict.fromkeys(self.medium.sigma_t_rgb.tolist())
+        return {s: ball_depths(self.balls, s, self.look) for s in extinctions}

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from refcloud.camera import AnyCamera, axes, project
 from refcloud.conventions import Array, Observer, Skipped
 from refcloud.lighting.colours import Haze, ball_colours, clearness
-from refcloud.lighting.depths import ball_depths
 from refcloud.lighting.erosion import detail_grid
 from refcloud.lighting.hidden import Mask, on_screen
 from refcloud.lighting.lightfield import light_field
@@ -80,18 +79,21 @@ class Seen:
 
         Only balls of one colour each show that; others vary over their footprints.
         """
-        color = self.colours[:, -1]
-        for s in range(self.colours.shape[1] - 1):
-            color = color + self.colours[:, s]
+        color = self._all_lights()
         if (self.clear == 1.0).all():  # no air
             return color
         return color * self.clear[:, None] + self.air * (1.0 - self.clear)[:, None]
 
     def brightest(self) -> float:
         """Give the largest colour of any ball or of the air: no pixel passes it."""
-        return max(
-            float(self.colours.sum(axis=1).max(initial=0.0)), float(self.air.max())
-        )
+        return max(float(self._all_lights().max(initial=0.0)), float(self.air.max()))
+
+    def _all_lights(self) -> Array:
+        """Sum what the ambient light and each sun show of every ball, shape (N, 3)."""
+        color = self.colours[:, -1]
+        for s in range(self.colours.shape[1] - 1):
+            color = color + self.colours[:, s]
+        return color
 
     def channel_groups(self) -> list[list[int]]:
         """Group the channels of one extinction: a grey medium needs one pass (L12)."""
@@ -122,8 +124,10 @@ def seen_by(
     dark = sum(1 for sun in lit.suns if not sun.irradiance.any())
     if dark:
         skipped.append(Skipped("light", "suns without light", dark, len(lit.suns)))
-    extinction = lit.medium.sigma_t_rgb.tolist()
-    by_extinction = {s: _eye_depths(lit, s, depth) for s in dict.fromkeys(extinction)}
+    fade = _fading(lit, depth)
+    by_extinction = {
+        s: tau * fade * lit.look.erosion_depth for s, tau in lit.depths.items()
+    }
     return Seen(
         lit,
         camera,
@@ -131,7 +135,7 @@ def seen_by(
         y,
         radius,
         scale,
-        np.stack([by_extinction[s] for s in extinction]),
+        np.stack([by_extinction[s] for s in lit.medium.sigma_t_rgb.tolist()]),
         ball_colours(lit, camera),
         clearness(haze, balls.centers, camera),
         np.zeros(3) if haze is None else haze.color,
@@ -140,14 +144,13 @@ def seen_by(
     ), skipped
 
 
-def _eye_depths(lit: LitMetaballs, sigma_t: float, depth: Array) -> Array:
-    """Give optical depths as the eye counts them.
+def _fading(lit: LitMetaballs, depth: Array) -> Array:
+    """Give what the eye counts of each ball's optical depth.
 
     A ball fades in as the eye leaves it, so that none pops at the near plane.
     """
     nearness = np.clip(depth / lit.balls.radii, 0.0, 1.0)
-    fade = nearness * nearness * (3.0 - 2.0 * nearness)
-    return ball_depths(lit.balls, sigma_t, lit.look) * fade * lit.look.erosion_depth
+    return nearness * nearness * (3.0 - 2.0 * nearness)
 
 
 def shading_of(

@@ -12,8 +12,8 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Observer, Skipped, Tolerance
 from refcloud.lighting.coarser import Sized, may_shrink, sized_share
-from refcloud.lighting.colours import gain_of
 from refcloud.lighting.ends import refuse_extreme
+from refcloud.lighting.gain import gain_of
 from refcloud.lighting.lightview import light_view
 from refcloud.lighting.lit import LitMetaballs
 from refcloud.lighting.look import Look, LookName, named

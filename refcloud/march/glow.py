@@ -23,6 +23,7 @@ from refcloud.march.box import slabs
 from refcloud.march.cells import Lattice, cut, density_at, lattice, most_rays
 from refcloud.march.pieces import POINTS, WEIGHTS, taken, thinner
 from refcloud.march.quadrature import before_each, integrals_up_to
+from refcloud.products import product
 from refcloud.transport import ScatteredLight
 from refcloud.transport.scattering import harmonics_toward, source_terms
 
@@ -112,7 +113,7 @@ def glow(
         return radiance
     for rays, corners, weights in _tiles(directions, way.apart):
         terms = [
-            np.tensordot(harmonics_toward(light, -corners, k), values, axes=1)
+            _toward(harmonics_toward(light, -corners, k), values)
             for k, values in enumerate(source_terms(light))
         ]
         apart = way.stride * float(cell_size(cloud).min())
@@ -124,6 +125,12 @@ def glow(
             shares = [weights[start : start + chunk]] * len(terms)
             radiance[part] = _sum(light, samples, terms, shares, len(part), thin=False)
     return radiance
+
+
+def _toward(harmonics: Array, values: Numbers) -> Numbers:
+    """Give terms (R, B, D, H, W) toward directions of harmonics (Q, R)."""
+    flat = values.reshape(len(values), -1)
+    return product(harmonics, flat).reshape(-1, *values.shape[1:])
 
 
 def _sum(

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.noise.hashing import uniform
+from refcloud.products import ONE_THREAD
 
 Labels = NDArray[np.integer]
 
@@ -14,9 +15,6 @@ Labels = NDArray[np.integer]
 START, VISIT, SPREAD = 1, 2, 3
 # k-means++ draws a batch of new centres at once: this share of those it has.
 BATCH = 8
-# Multiplications of one matrix product: up to 2^18 OpenBLAS keeps to one thread, and
-# threads that wait for one another cost more than they save.
-ONE_THREAD = 1 << 18
 # The start is drawn from so many points for each centre, at least LEAST_DRAWN.
 DRAWN_FROM, LEAST_DRAWN = 24, 2048
 # Squared distances below this share of the cloud's are rounding of equal points.

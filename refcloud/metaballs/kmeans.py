@@ -15,12 +15,8 @@ from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Range, Seed, Shape
-from refcloud.metaballs.choices import (
-    ONE_THREAD,
-    spread_start,
-    start_patterns,
-    visits,
-)
+from refcloud.metaballs.choices import spread_start, start_patterns, visits
+from refcloud.products import ONE_THREAD
 
 Labels = NDArray[np.integer]
 

@@ -19,8 +19,6 @@ from refcloud.noise.mixing import Bits, _axis_bits
 from refcloud.noise.scattered import PERIOD, Numbers, _split, _wrapped
 
 TILE = 16  # samples along an axis that share one product
-# OpenBLAS starts threads from this many multiplications in a product.
-MOST_PRODUCTS = 1 << 18
 
 
 @dataclass(frozen=True)
@@ -103,11 +101,3 @@ def _axis(reduced: Array, number: int, how: How) -> Axis:
         tiles.append(Tile(part, band, *kinds))
     bits = _axis_bits(_wrapped(lines, how.period), number, how.seed, how.hash)
     return Axis(bits, tiles, reduced.size)
-
-
-def _product(left: Numbers, right: Numbers, out: Numbers) -> None:
-    """Write left (m, K) times right (..., K, n) to out, without starting threads."""
-    step = max(1, MOST_PRODUCTS // left.size)
-    for first in range(0, right.shape[-1], step):
-        part = slice(first, first + step)
-        np.matmul(left, right[..., part], out=out[..., part])

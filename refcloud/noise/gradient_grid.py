@@ -17,18 +17,12 @@ from numpy.typing import NDArray
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Seed, Shape
-from refcloud.noise.bands import (
-    MOST_PRODUCTS,
-    Axis,
-    _ascending,
-    _axis,
-    _lines,
-    _product,
-)
+from refcloud.noise.bands import Axis, _ascending, _axis, _lines
 from refcloud.noise.directions import Fade, Gradients, _named
 from refcloud.noise.gradient import FADES, How, Period
 from refcloud.noise.mixing import Hash, _choice, _joined, lattice_bits
 from refcloud.noise.scattered import Dtype, Numbers
+from refcloud.products import ONE_THREAD, product
 
 MOST_BLENDED = 1 << 22  # values blended along x that are held at a time: 32 MB
 
@@ -205,7 +199,7 @@ def _blended_along_x(
         for tile in axes[0].tiles:
             # Only along x itself does the offset count.
             weights = (tile.weights if k else tile.slopes).T
-            step = max(1, MOST_PRODUCTS // weights.size)
+            step = max(1, ONE_THREAD // weights.size)
             for first in range(0, len(pick), step):
                 part = slice(first, first + step)
                 np.matmul(
@@ -224,14 +218,14 @@ def _values(
     height, width = len(tile.weights), xy.shape[-1]
     pairs = slice(2 * tile.lines.start, 2 * tile.lines.stop)
     blended = np.empty((len(xy), 2, height, width), xy.dtype)
-    _product(tile.both, xy[:, pairs], blended[:, 0])
+    product(tile.both, xy[:, pairs], blended[:, 0])
     if len(axes) == 2:
         yield slice(None), blended[0, 0]
         return
-    _product(tile.weights, z[:, tile.lines], blended[:, 1])
+    product(tile.weights, z[:, tile.lines], blended[:, 1])
     blended = blended.reshape(-1, height * width)
     for planes in axes[2].tiles:
         values = np.empty((len(planes.weights), height * width), xy.dtype)
         pairs = slice(2 * planes.lines.start, 2 * planes.lines.stop)
-        _product(planes.both, blended[pairs], values)
+        product(planes.both, blended[pairs], values)
         yield planes.samples, values.reshape(-1, height, width)

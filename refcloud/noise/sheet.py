@@ -64,7 +64,7 @@ def overlap_octaves(values: Grey, size: Side = 256, *, octaves: Octaves = 4) -> 
     480.0
     """
     values = _some(values)
-    total = np.zeros((size, size))
+    total = np.empty((size, size))
     for octave in range(octaves):
         # 1. An octave is one blown-up map, laid beside itself 2^o times both ways.
         #    Where the size is a power of two, places repeat exactly: one is enough.
@@ -73,6 +73,9 @@ def overlap_octaves(values: Grey, size: Side = 256, *, octaves: Octaves = 4) -> 
         tiled = total.reshape(tiles, side, tiles, side)
         # 2. Some rows at a time are added to all of their places at once.
         for rows, part in _blown_up(values, 2.0**octave / size, side):
+            if octave == 0:  # by itself, and the first there
+                total[rows] = part
+                continue
             part *= 0.5**octave
             tiled[:, rows] += part[:, None]
     return total

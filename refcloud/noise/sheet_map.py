@@ -82,7 +82,10 @@ def wrap_halo(values: Grey) -> Array:
     >>> wrap_halo([[1.0, 2.0]])[0]
     array([2., 1., 2., 1.])
     """
-    return np.pad(_some(values), 1, mode="wrap")
+    values = _some(values)
+    height, width = values.shape
+    across = values.take(range(-1, width + 1), axis=1, mode="wrap")
+    return across.take(range(-1, height + 1), axis=0, mode="wrap")
 
 
 @checked

@@ -24,10 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
-from refcloud.noise.bands import MOST_PRODUCTS
 from refcloud.noise.directions import SETS, USUAL
 from refcloud.noise.mixing import Hash, _axis_bits, _choice, _joined
 from refcloud.noise.scattered import Dtype, Numbers
+from refcloud.products import ONE_THREAD
 
 SQUARED = 0.5  # of the continuous radius: no kernel reaches out of its simplices
 KINDS = 3  # of blocks, by the sum of their places modulo 3
@@ -109,7 +109,7 @@ def _on_blocks(cut: list[Phases], seed: int, hash: Hash, peak: float, dtype: Dty
         points, kernels = _kernels(local, kind, dtype)
         # 3. Multiply them by the gradients, some blocks at a time.
         slopes = _slopes(points, mine + starts, kind, rows, seed, hash)
-        step = max(1, MOST_PRODUCTS // kernels.size)
+        step = max(1, ONE_THREAD // kernels.size)
         shape = [line.size for line in local[::-1]]
         for first in range(0, mine.shape[1], step):
             x, y, z = mine[:, first : first + step]

@@ -56,13 +56,8 @@ def walk(
     """Follow one path from the eye to its end; give the light that it finds."""
     sigma_t, albedo, g, name = matter
     densest = sigma_t * max(v for rows in cloud[0] for row in rows for v in row)
-    p, w, found, scattered, stop = (
-        entered(cloud, origin, direction),
-        direction,
-        0.0,
-        0,
-        0,
-    )
+    p, w = entered(cloud, origin, direction), direction
+    found, scattered, stop = 0.0, 0, 0
     if p is None or not densest > 0.0:
         return 0.0
     while scattered < orders:
@@ -76,9 +71,8 @@ def walk(
             if uniform(path, stop, ALBEDO, seed=seed) >= albedo:
                 return found
             for s, (toward, irradiance) in enumerate(suns):
-                cosine = max(
-                    min(sum(a * b for a, b in zip(w, toward, strict=True)), 1.0), -1.0
-                )
+                cosine = sum(a * b for a, b in zip(w, toward, strict=True))
+                cosine = max(min(cosine, 1.0), -1.0)
                 T = sun_share(cloud, p, toward, sigma_t, densest, (path, stop, s), seed)
                 found += irradiance * phase(name, g, cosine) * T
             w = turned(w, name, g, path, stop, seed)

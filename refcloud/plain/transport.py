@@ -101,10 +101,11 @@ def passed_inside(slices: Slices, m: int, c: tuple[int, int]) -> float:
             at = (c[axis] - middle * slope + 0.5) / s - 0.5
             inside = s * (n - 0.5 - at)  # samples from the side that faces the sun
             place.append(at)
-            if slope == 0.0:
+            across = slope * step  # samples; half the least number is 0
+            if across == 0.0:
                 shares.append(float(inside > 0.0))
             else:
-                shares.append(min(max(0.5 + inside / (slope * step), 0.0), 1.0))
+                shares.append(min(max(0.5 + inside / across, 0.0), 1.0))
         total += step * min(shares) * slices.field(place)
     return total * slices.length / s
 

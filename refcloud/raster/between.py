@@ -32,6 +32,7 @@ HALFWAY = np.array([3.0, -25.0, 150.0, 150.0, -25.0, 3.0]) / 256.0
 FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 BEFORE, AFTER = 2, 3  # samples beyond a tile's edges that its pixels need
 AROUND = BEFORE + SAMPLES + AFTER
+EACH = AROUND * (SAMPLES + 1)  # fourth differences of a tile, each way
 TOGETHER = 96  # tiles at a time: they stay in the cache, and products are small ones
 # Of a sample's error, what pixels of the tile beside it take over at most: the weights
 # of all samples outside sum to 1.451 at a corner.
@@ -62,6 +63,18 @@ def _matrices() -> tuple[Floats, Floats]:
 FROM_ROW, ROW_FOURTH = _matrices()
 
 
+def _counted() -> Floats:
+    """Give how much each line of samples counts for each half of a tile, (2, 13)."""
+    counted = np.zeros((2, AROUND), np.float32)
+    for i, middle in enumerate((0, SAMPLES // 2)):
+        counted[i, middle : middle + BEFORE + AFTER + SAMPLES // 2] = FAR
+        counted[i, middle + BEFORE : middle + BEFORE + SAMPLES // 2 + 1] = 1.0
+    return counted
+
+
+COUNTED = _counted()
+
+
 @functools.cache
 def sampled() -> tuple[Whole, tuple[Array, Array]]:
     """Give the numbers of the pixels that are samples, and their places; (64,) each."""
@@ -69,6 +82,12 @@ def sampled() -> tuple[Whole, tuple[Array, Array]]:
     pixels = np.flatnonzero((row % STEP == 0) & (column % STEP == 0))
     x, y = pixel_places()
     return pixels, (x[pixels], y[pixels])
+
+
+def samples_among(pixels: Floats) -> Floats:
+    """View those pixels of tiles that are samples, (..., 256) to (..., 8, 8)."""
+    parted = pixels.reshape(*pixels.shape[:-1], SAMPLES, STEP, SAMPLES, STEP)
+    return parted[..., 0, :, 0]
 
 
 class Quarters(NamedTuple):
@@ -132,70 +151,90 @@ class Samples:
         self.plane = np.zeros((channels, down * SAMPLES, across * SAMPLES), np.float32)
         self.plane[lights:] = 1.0
         tiled = self.plane.reshape(channels, down, SAMPLES, across, SAMPLES)
-        self.tiles = tiled.transpose(1, 3, 0, 2, 4)  # (down, across, C, 8, 8)
+        self.tiles = tiled.transpose(0, 1, 3, 2, 4)  # (C, down, across, 8, 8)
+        self.windows = sliding_window_view(self.plane, (AROUND, AROUND), axis=(1, 2))
 
     def put(self, lists: TileLists, which: Whole, *values: Floats) -> None:
-        """Write samples of some tiles: light and clear, (T, C, 64) each."""
+        """Write samples of some tiles: light and clear, (T, C, 64) or (T, C, 8, 8)."""
         where = lists.row[which] - self.box[2], lists.column[which] - self.box[0]
-        begin = 0
+        channel = 0
         for part in values:
-            end = begin + part.shape[1]
             square = part.reshape(*part.shape[:2], SAMPLES, SAMPLES)
-            self.tiles[:, :, begin:end][where] = square
-            begin = end
+            for k in range(part.shape[1]):
+                self.tiles[channel][where] = square[:, k]
+                channel += 1
 
-    def between(
-        self, lists: TileLists, which: Whole
-    ) -> tuple[Floats, tuple[Floats, Floats]]:
-        """Give pixels of some tiles from the samples in and around them.
-
-        Parameters
-        ----------
-        lists
-            The tiles' lists.
-        which
-            Numbers of tiles that are inside.
-
-        Returns
-        -------
-        All pixels, shape (C, T, 256); and the largest fourth difference of light and
-        of what passes in each quarter, shape (2, 2, T) each.
-        """
-        # 1. The samples of each tile and those around it, (C, T, 13, 13).
-        windows = sliding_window_view(self.plane, (AROUND, AROUND), axis=(1, 2))
+    def around(self, lists: TileLists, which: Whole) -> Floats:
+        """Give the samples of some tiles and those around them, (C, T, 13, 13)."""
         row = (lists.row[which] - self.box[2]) * SAMPLES - BEFORE
         column = (lists.column[which] - self.box[0]) * SAMPLES - BEFORE
-        around = windows[:, row, column]
-        # 2. Pixels along rows, then along columns.
-        rows = around.reshape(len(around), -1, AROUND)
-        along = (rows @ FROM_ROW).reshape(*around.shape[:3], SIDE)
-        pixels = np.matmul(FROM_ROW.T, along).reshape(*around.shape[:2], PIXELS)
-        # 3. Fourth differences along columns and along rows, (C, T, 9, 13) and
-        #    (C, T, 13, 9): the largest in light and in what passes, all tiles side by
-        #    side, (9, 13, 4 T); and of each quarter.
-        down = np.matmul(ROW_FOURTH.T, around)
-        across = (rows @ ROW_FOURTH).reshape(*around.shape[:3], SAMPLES + 1)
-        largest = np.empty((SAMPLES + 1, AROUND, 4, len(which)), np.float32)
-        for k, part in enumerate((slice(self.lights), slice(self.lights, None))):
-            for d, axes, to in ((down, (1, 2, 0), k), (across, (2, 1, 0), 2 + k)):
-                size = np.abs(d[part], out=d[part])
-                largest[:, :, to] = np.maximum.reduce(size).transpose(axes)
-        found = _by_quarter(largest)
-        both = np.maximum(found[:, :, :2], found[:, :, 2:].swapaxes(0, 1))
-        return pixels, (both[:, :, 0], both[:, :, 1])
+        return self.windows[:, row, column]
+
+    def either(self, sizes: Floats) -> tuple[Floats, Floats]:
+        """Give the largest of light, and of what passes, of (C, ...)."""
+        return (
+            np.maximum.reduce(sizes[: self.lights]),
+            np.maximum.reduce(sizes[self.lights :]),
+        )
+
+
+def halfway(around: Floats) -> Floats:
+    """Give all pixels of tiles from their samples, (C, T, 13, 13) to (C, T, 256)."""
+    rows = around.reshape(len(around), -1, AROUND)
+    along = (rows @ FROM_ROW).reshape(*around.shape[:3], SIDE)
+    return np.matmul(FROM_ROW.T, along).reshape(*around.shape[:2], PIXELS)
+
+
+def fourth_differences(around: Floats) -> tuple[Floats, Floats]:
+    """Give sizes of fourth differences: down columns and along rows.
+
+    Parameters
+    ----------
+    around
+        Samples of tiles, shape (C, T, 13, 13).
+
+    Returns
+    -------
+    Shape (C, T, 9, 13) and (C, T, 13, 9).
+    """
+    down = np.matmul(ROW_FOURTH.T, around)
+    rows = around.reshape(len(around), -1, AROUND)
+    across = (rows @ ROW_FOURTH).reshape(*around.shape[:3], SAMPLES + 1)
+    return np.abs(down, out=down), np.abs(across, out=across)
+
+
+def largest_of_tiles(differences: tuple[Floats, Floats]) -> Floats:
+    """Give the largest difference of each tile, shape (C, T)."""
+    down, across = (
+        np.maximum.reduce(each.reshape(*each.shape[:2], EACH), axis=2)
+        for each in differences
+    )
+    return np.maximum(down, across)
+
+
+def largest_of_quarters(differences: tuple[Floats, Floats]) -> Floats:
+    """Give the largest difference of each quarter of tiles, shape (2, 2, T).
+
+    Parameters
+    ----------
+    differences
+        Of one channel each, or the largest of several: (T, 9, 13) and (T, 13, 9).
+    """
+    down, across = differences
+    by_column = _by_quarter(across.swapaxes(1, 2)).swapaxes(0, 1)
+    return np.maximum(_by_quarter(down), by_column)
 
 
 def _by_quarter(values: Floats) -> Floats:
-    """Give the largest difference of each quarter, (9, 13, ...) to (2, 2, ...).
+    """Give the largest difference of each quarter, (T, 9, 13) to (2, 2, T).
 
     Lines that a quarter's pixels take little of count by as much.
     """
     middle = SAMPLES // 2
-    found = np.empty((2, 2, *values.shape[2:]), values.dtype)
+    found = np.empty((2, 2, len(values)), values.dtype)
     for j in range(2):
-        along = values[middle * j : middle * j + middle + 1].max(axis=0)
+        rows = values[:, middle * j : middle * j + middle + 1]
+        along = np.maximum.reduce(rows, axis=1)
         for i in range(2):
-            reach = along[middle * i : middle * i + middle + 5]
-            near = reach[BEFORE : BEFORE + middle + 1].max(axis=0)
-            np.maximum(near, FAR * reach.max(axis=0), out=found[j, i])
+            found[j, i] = np.maximum.reduce(along * COUNTED[i], axis=1)
     return found

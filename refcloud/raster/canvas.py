@@ -56,22 +56,24 @@ class Canvas:
         clear
             Share of what lies behind that passes, shape (T, G, pixels of a tile).
         """
-        square = len(lists.row), SIDE, SIDE
         where = lists.row, lists.column
+        squares, through = (
+            part.reshape(*part.shape[:2], SIDE, SIDE) for part in (light, clear)
+        )
         for group, channels in enumerate(groups):
-            passed = clear[:, group].reshape(square)
+            passed = through[:, group]
             for channel in channels:
-                shown = light[:, channel].reshape(square)
+                shown = squares[:, channel]
                 if self.over:
                     shown = shown + passed * self.tiles[channel][where]
                 self.tiles[channel][where] = shown
         if not self.over:
-            alpha = 1.0 - clear[:, 0]
+            alpha = 1.0 - through[:, 0]
             if len(groups) > 1:  # the mean over the channels
                 alpha *= len(groups[0]) / 3.0
                 for group, channels in enumerate(groups[1:], 1):
-                    alpha += len(channels) / 3.0 * (1.0 - clear[:, group])
-            self.tiles[3][where] = np.reshape(alpha, square)
+                    alpha += len(channels) / 3.0 * (1.0 - through[:, group])
+            self.tiles[3][where] = alpha
 
     def pixels(self) -> Array:
         """Give the picture, RGBA of shape (H, W, 4), colour multiplied by alpha."""

@@ -17,7 +17,7 @@ Faces = NDArray[np.int64]
 
 
 def clip(
-    corners: Array, faces: Faces, planes: Array
+    corners: Array, faces: Faces, planes: Array, unseen: Array | None = None
 ) -> tuple[Array, Faces, NDArray[np.int64]]:
     """Cut triangles by planes, one plane after the other.
 
@@ -29,6 +29,9 @@ def clip(
         Corners of each triangle, shape (3, T).
     planes
         Shape (P, 4): a b c d, with a right + b up + c depth + d at least 0 inside.
+    unseen
+        More of them, by which nothing is cut: triangles with all corners outside of
+        one are left out. Together at most 16.
 
     Returns
     -------
@@ -39,16 +42,19 @@ def clip(
     polygons; OpenGL 4.6, section 13.7.
     """
     # A bit for each plane that a corner lies outside of tells, of most triangles, that
-    # nothing is cut: no bit is set, or one is set at all three corners.
-    code = np.zeros(corners.shape[1], np.uint8)
-    for number, plane in enumerate(planes):
-        code |= (_inside(corners, plane) < 0.0).view(np.uint8) << np.uint8(number)
+    # nothing is cut: no plane's bit is set, or one is set at all three corners.
+    code = np.zeros(corners.shape[1], np.uint16)
+    beside = () if unseen is None else unseen
+    for number, plane in enumerate((*planes, *beside)):
+        code |= (_inside(corners, plane) < 0.0).astype(np.uint16) << np.uint16(number)
     first, second, third = code.take(faces)
-    touched = (first | second | third) > 0
-    if not touched.any():
+    cuts = np.uint16((1 << len(planes)) - 1)
+    touched = (first | second | third) & cuts > 0
+    left_out = first & second & third > 0
+    if not (touched | left_out).any():
         return corners, faces, np.arange(faces.shape[1])
-    whole = np.flatnonzero(~touched)
-    source = np.flatnonzero(touched & (first & second & third == 0))
+    whole = np.flatnonzero(~(touched | left_out))
+    source = np.flatnonzero(touched & ~left_out)
     left, faces = faces[:, whole], faces[:, source]
     for plane in planes:
         inside = _inside(corners, plane)

@@ -14,9 +14,9 @@ from refcloud.raster.diamonds import Thickness, pixels_between
 from refcloud.raster.factors import Blending, Factor
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer, Rgba
 from refcloud.raster.meshes import WORLD
+from refcloud.raster.runs import View
 from refcloud.raster.spans import batches
 from refcloud.raster.store import DepthFunc, State, flattened, unflattened, write
-from refcloud.raster.varying import View
 from refcloud.raster.visible import layers
 from refcloud.raster.window import (
     NEAR,

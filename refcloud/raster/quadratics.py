@@ -129,25 +129,28 @@ class Quadratics:
         # With v = scale p the strength and the leading factor are in already.
         self.scale = (strength * form.leading) ** (1.0 / (form.power + 1.0))
 
-        ball, inverse = lists.ball, (1.0 / discs.radius)[lists.ball]
-        column, row = (
-            np.repeat((at + 0.5) * SIDE, lists.count)
-            for at in (lists.column, lists.row)
+        # 1. Of each pair the ball's middle from the tile's, in radii.
+        ball, inverse = lists.ball, 1.0 / discs.radius
+        inverse = inverse.take(ball)
+        cx, cy = (
+            (place.take(ball) - np.repeat((at + 0.5) * SIDE, lists.count)) * inverse
+            for place, at in ((discs.x, lists.column), (discs.y, lists.row))
         )
-        cx = (discs.x[ball] - column) * inverse
-        cy = (discs.y[ball] - row) * inverse
-        scale = self.scale[ball]
+        # 2. A row for each pair, one more of zeros for the empty slots: the four
+        #    numbers, the first again for p + shift, and what is looked up with them.
+        #    Column by column: each is one list of numbers, gathered or computed.
+        self.rows = np.empty((len(ball) + 1, 5 + beside.shape[1]), dtype)
+        self.rows[-1] = 0.0
+        column = self.rows[:-1].T
+        scale = self.scale.take(ball)
         first = scale * (1.0 - cx * cx - cy * cy)
-        inverse *= scale
-        # A row for each pair, one more of zeros for the empty slots: the four numbers,
-        # the first again for p + shift, and what is looked up with them.
-        self.rows = np.zeros((len(ball) + 1, 5 + beside.shape[1]), dtype)
-        rows = self.rows[:-1]
-        rows[:, 0], rows[:, 4] = first, first + form.shift * scale
-        rows[:, 1] = 2.0 * cx * inverse
-        rows[:, 2] = 2.0 * cy * inverse
-        rows[:, 3] = -inverse * (1.0 / discs.radius)[ball]
-        rows[:, 5:] = np.asarray(beside, dtype).take(ball, axis=0)
+        column[0], column[4] = first, first + form.shift * scale
+        scaled = inverse * scale
+        column[1] = 2.0 * cx * scaled
+        column[2] = 2.0 * cy * scaled
+        column[3] = -scaled * inverse
+        for number, values in enumerate(beside.T, 5):
+            column[number] = values.astype(dtype).take(ball)
 
     def taken(
         self,

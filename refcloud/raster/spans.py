@@ -11,9 +11,10 @@ each edge that is rounded down, and no pixel is ever asked whether it lies insid
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import functools
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ from refcloud.raster.window import SUBPIXEL, Places, to_subpixels
 Indices = NDArray[np.int64]
 HALF = SUBPIXEL // 2
 ROWS_AT_ONCE = 1 << 18  # triangles are taken in batches that cover about so many rows
-FARTHEST = 1 << 40  # column: beyond every window
+FARTHEST = 1 << 60  # column: beyond every window, and every edge's reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,9 @@ class Spans:
     def some(self, which: Indices | NDArray[np.bool_] | slice) -> Spans:
         """Give some of them."""
         numbers = (self.triangle, self.row, self.first, self.count)
-        return Spans(*(of_span[which] for of_span in numbers))
+        if isinstance(which, slice) or which.dtype == bool:
+            return Spans(*(of_span[which] for of_span in numbers))
+        return Spans(*(of_span.take(which) for of_span in numbers))
 
     def parted(self) -> tuple[Spans, Spans]:
         """Give those that share no pixel, in the pixels' order, and the others.
@@ -64,20 +67,16 @@ class Spans:
         # 2. Columns of all rows on one line: a span stands alone if it begins after all
         #    before it have ended, and ends before the next begins.
         width = int((self.first + self.count).max(initial=0))
-        begin = (self.row * width + self.first)[order]
-        end = begin + self.count[order]
+        begin = (self.row * width + self.first).take(order)
+        end = begin + self.count.take(order)
+        before_next = end[:-1] <= begin[1:]
+        if before_next.all():
+            return self.some(order), self.some(slice(0, 0))
         alone = np.ones(len(order), bool)
         alone[1:] = begin[1:] >= np.maximum.accumulate(end)[:-1]
-        alone[:-1] &= end[:-1] <= begin[1:]
-        if alone.all():
-            return self.some(order), self.some(slice(0, 0))
+        alone[:-1] &= before_next
         shared = np.sort(order[~alone])
         return self.some(order[alone]), self.some(shared)
-
-    def batches(self, most: int) -> Iterator[Spans]:
-        """Split them so that each part has at most so many pixels, or one span."""
-        for part in batches(self.count, most):
-            yield self.some(part)
 
     def pixels(self) -> tuple[Indices, Indices, Indices]:
         """Give triangle, row and column of every pixel, span after span."""
@@ -181,12 +180,14 @@ def row_spans(x: Places, y: Places, rows: slice, columns: slice) -> Iterator[Spa
     height = np.where(area_of(x, y) > 0, np.maximum(bottom - top, 0), 0)
     before = np.cumsum(height) - height
     for part in batches(height, ROWS_AT_ONCE):
-        triangle = np.repeat(np.arange(part.start, part.stop), height[part])
-        within = np.arange(len(triangle)) - (before - before[part.start])[triangle]
-        row = top[triangle] + within
-        low, high = _columns(x, y, triangle, row, columns)
-        found = high > low
-        yield Spans(triangle[found], row[found], low[found], high[found] - low[found])
+        rows_of = functools.partial(np.repeat, repeats=height[part])
+        triangle = rows_of(np.arange(part.start, part.stop))
+        row = rows_of((top - before)[part] + before[part.start])
+        row += np.arange(len(row))
+        low, high = _columns(x[:, part], y[:, part], rows_of, row, columns)
+        spans = Spans(triangle, row, low, high - low)
+        filled = high > low
+        yield spans if filled.all() else spans.some(filled)
 
 
 def area_of(x: Places, y: Places) -> Indices:
@@ -201,24 +202,44 @@ def reaching(places: Places, part: slice) -> NDArray[np.bool_]:
 
 
 def _columns(
-    x: Places, y: Places, triangle: Indices, row: Indices, columns: slice
+    x: Places,
+    y: Places,
+    of_rows: Callable[[Any], Any],
+    row: Indices,
+    columns: slice,
 ) -> tuple[Indices, Indices]:
-    """Give the first column of each row, and the one behind the last."""
-    low = np.full(len(row), columns.start)
-    high = np.full(len(row), columns.stop)
+    """Give the first column of each row, and the one behind the last.
+
+    `of_rows` gives each row its triangle's number.
+    """
+    # Whole numbers below 2^53 are whole in float64 as well, in which numpy divides many
+    # times faster; those below add up six products of two places at most. A quotient
+    # rounded there has the right floor: it is 1 / step or more away from the next whole
+    # number, further than it is rounded by.
+    reach = max(int(np.abs(k).max(initial=0)) for k in (x, y, row * SUBPIXEL))
+    kind: Any = np.float64 if 8 * (reach + SUBPIXEL) ** 2 < 1 << 53 else np.int64
+    x, y, row = (k.astype(kind) for k in (x, y, row))
+    low = np.full(len(row), columns.start, kind)
+    high = np.full(len(row), columns.stop, kind)
     for a, b in ((0, 1), (1, 2), (2, 0)):
         run, rise = x[b] - x[a], y[b] - y[a]
         # Twice the area spanned with the centre of column 0 in row 0, less than 0 on
         # the outer side; 1 less where the edge itself does not count.
         counts = (rise < 0) | ((rise == 0) & (run > 0))
-        at_zero = run * (HALF - y[a]) - rise * (HALF - x[a]) - np.where(counts, 0, 1)
+        at_zero = run * (HALF - y[a]) - rise * (HALF - x[a]) - ~counts
         # A step to the right changes that by -rise.
-        step = np.maximum(np.abs(rise), 1) * SUBPIXEL
-        value = at_zero[triangle] + (run * SUBPIXEL)[triangle] * row
-        last = value // step[triangle]
-        side = np.sign(rise)[triangle]
+        last = of_rows(run * SUBPIXEL)
+        last *= row
+        last += of_rows(at_zero)
+        step = of_rows(np.maximum(np.abs(rise), 1) * SUBPIXEL)
+        if kind is np.float64:
+            last /= step
+            np.floor(last, out=last)
+        else:
+            last //= step
         # Edges that go down end the span, edges that go up begin it; level ones are
-        # the rows' own ends.
-        high = np.where(side > 0, np.minimum(high, last + 1), high)
-        low = np.where(side < 0, np.maximum(low, -last), low)
-    return low, high
+        # the rows' own ends. Others are moved to where they cut nothing off.
+        beyond = kind(FARTHEST)
+        np.minimum(high, last + of_rows(np.where(rise > 0, kind(1), beyond)), out=high)
+        np.maximum(low, of_rows(np.where(rise < 0, kind(0), -beyond)) - last, out=low)
+    return low.astype(np.int64), high.astype(np.int64)

@@ -102,6 +102,11 @@ class Texture:
             return self.wrap
         return (self.wrap,) * self.dimension
 
+    @functools.cached_property
+    def moves(self) -> bool:
+        """Tell whether the matrix changes coordinates."""
+        return not np.array_equal(self.matrix, np.eye(4))
+
     @property
     def levels(self) -> tuple[Array, ...]:
         """Give what is looked up: level 0, and the smaller ones where there are some.

@@ -194,16 +194,19 @@ def tile_lists(
     high = np.where(counts > 0, ranges.bottom - ranges.top, 0)
     ball = np.repeat(np.arange(len(counts)), high)
     row = np.arange(len(ball)) - np.repeat(np.cumsum(high) - high - ranges.top, high)
-    x, y, radius = discs.x[ball], discs.y[ball], discs.radius[ball]
+    x, y, radius = (of.take(ball) for of in (discs.x, discs.y, discs.radius))
     low = row * float(edge) + 0.5
-    gap = np.clip(y, low, low + (edge - 1.0)) - y
+    gap = np.maximum(low, np.minimum(y, low + (edge - 1.0)))
+    gap -= y
     gap /= radius
-    half = np.sqrt(np.maximum(1.0 + ROOM - gap * gap, 0.0)) * radius
-    left, right = ranges.left[ball], ranges.right[ball]
-    first = np.ceil(np.clip((x - half - (edge - 0.5)) / edge, left, right))
-    stop = np.floor(np.clip((x + half - 0.5) / edge, left - 1, right - 1)) + 1.0
-    first = first.astype(np.intp)
-    count = np.maximum(stop.astype(np.intp) - first, 0)
+    half = np.sqrt(np.maximum(1.0 + ROOM - gap * gap, 0.0))
+    half *= radius
+    left, right = ranges.left.take(ball), ranges.right.take(ball)
+    first = np.ceil((x - half - (edge - 0.5)) / edge)
+    stop = np.floor((x + half - 0.5) / edge) + 1.0
+    first = np.maximum(left, np.minimum(first, right)).astype(np.intp)
+    stop = np.maximum(left, np.minimum(stop, right)).astype(np.intp)
+    count = np.maximum(stop - first, 0)
 
     # 2. One pair for each tile of these, ball after ball.
     wide = box[1] - box[0]

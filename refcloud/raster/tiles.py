@@ -153,7 +153,7 @@ class Compositor:
         ranked = np.argsort(-counts, kind="stable")  # lists of like length together
         for begin in range(0, len(tiles), together):
             live = ranked[begin : begin + together]
-            added = np.zeros((len(live), self.channels, size), self.dtype)
+            added = np.empty(0, self.dtype)  # nothing yet
             through = np.ones((len(live), size), self.dtype)
             total = np.zeros((len(live), size))  # its log2, in float64: no drift
             slot = 0
@@ -193,8 +193,11 @@ class Compositor:
                 change[..., 0], change[..., -1] = shown[..., 0], -shown[..., -1]
                 np.subtract(shown[..., 1:], shown[..., :-1], out=change[..., 1:-1])
                 more = np.matmul(change, F.transpose(1, 0, 2))
-                more *= through[:, None]
-                added += more
+                if slot == 0:
+                    added = more
+                else:
+                    more *= through[:, None]
+                    added += more
                 if self.beer:
                     through[...] = total
                     np.exp2(through, out=through)
@@ -205,6 +208,10 @@ class Compositor:
                 slot += slots
                 left -= slots
                 done = (left <= 0) | (through.max(axis=1) <= least)
+                if done.all():
+                    unseen[live] = np.maximum(left, 0)
+                    light[live], clear[live] = added, through
+                    break
                 if 4 * np.count_nonzero(done) >= n:
                     unseen[live[done]] = np.maximum(left[done], 0)
                     light[live[done]] = added[done]

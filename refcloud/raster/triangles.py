@@ -21,10 +21,11 @@ from refcloud.raster.fragments import PLAIN, scissored
 from refcloud.raster.framebuffer import CHANNELS, Framebuffer, Rgba
 from refcloud.raster.lookup import level_of_detail, looked_up, transformed
 from refcloud.raster.meshes import Mesh
+from refcloud.raster.runs import Run, View, planes_through
 from refcloud.raster.spans import area_of, reaching, row_spans
 from refcloud.raster.store import State, flattened, unflattened, write
 from refcloud.raster.texture import Texture
-from refcloud.raster.varying import Fragments, Run, View, planes_through
+from refcloud.raster.varying import Fragments, fragments_of
 from refcloud.raster.visible import layers, pieces, places
 from refcloud.raster.window import (
     NEAR,
@@ -39,6 +40,7 @@ from refcloud.raster.window import (
 
 Cull = Literal["FRONT", "BACK", "FRONT_AND_BACK"]
 AT_ONCE = 1 << 17  # fragments that are sorted out together
+BESIDE = 2.0  # pixels: further beside the window, no rounding leads back to it
 SHADED_AT_ONCE = 1 << 15  # their numbers then stay in the cache
 # Largest error of texels mixed in float32, of the largest among them: each of up to
 # four mixings rounds five times, by 2^-24 of at most twice that.
@@ -184,7 +186,7 @@ def draw_triangles(
 
 def _shaded(shade: Any, fragments: Fragments) -> Array:
     """Ask for colours, and refuse what is none."""
-    n = len(fragments.column)
+    n = len(fragments)
     if not callable(shade):
         return np.broadcast_to(shade, (n, CHANNELS))
     if isinstance(shade, Textured):
@@ -232,7 +234,8 @@ def covered(
     # 1. Into the camera's frame, and cut.
     corners = np.concatenate([to_camera(camera, mesh.points), mesh.attributes], axis=1)
     planes = planes_of(camera, near, far)
-    corners, faces, source = clip(corners.T, mesh.faces.T, planes)
+    beside = planes_of(camera, near, guard=BESIDE)[1:]
+    corners, faces, source = clip(corners.T, mesh.faces.T, planes, beside)
 
     # 2. Into the window, on whole sub-pixels.
     place = snapped(camera, corners[:3].T, near)
@@ -260,9 +263,7 @@ def covered(
     view = View(pinhole, near, far)
     for spans in row_spans(x, y, *box):
         alone, others = spans.parted()
-        for part in alone.batches(SHADED_AT_ONCE):
-            run = Run(part, linear, source, front, view)
-            yield run.fragments(tolerance, alone=True)
-        for part in others.batches(AT_ONCE):
-            run = Run(part, linear, source, front, view)
-            yield run.fragments(tolerance, alone=False)
+        for some, most in ((alone, SHADED_AT_ONCE), (others, AT_ONCE)):
+            run = Run(some, linear, source, front, view)
+            for part in run.parts(most):
+                yield fragments_of(part, tolerance, alone=some is alone)

@@ -1,11 +1,4 @@
-"""What a shader is given: the fragments of triangles and what they interpolate.
-
-On the screen a number that is linear over a triangle in space is a quotient: both it
-divided by depth and 1 / depth are linear there. So a span starts at its first pixel's
-numerator and denominator and goes on in equal steps. The start comes from the corners
-by barycentric weights, quotients of whole numbers from 0 to 1: from anywhere outside of
-a thin triangle its steep planes would lead back to it with few digits left.
-"""
+"""What a shader is given: the fragments of triangles and what they interpolate."""
 
 from __future__ import annotations
 
@@ -17,150 +10,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
-from refcloud.raster.spans import HALF, Spans
-from refcloud.raster.window import SUBPIXEL, Places
+from refcloud.raster.runs import Run, held
 
 Indices = NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False)
-class Planes:
-    """Numbers that are linear on the screen, for each of T triangles.
-
-    Attributes
-    ----------
-    origin
-        The first corner's x and y in sub-pixels, shape (2, T).
-    sides
-        From there to the second and the third corner: x, y, x, y, shape (4, T).
-    area
-        Twice the triangle's, square sub-pixels, shape (T,).
-    value
-        At the first corner, shape (1 + K, T): first 1 / depth, or depth where rays are
-        parallel, then the attributes, divided by depth for a pinhole.
-    rises
-        From there to the second and the third corner, each of shape (1 + K, T).
-    along_x, along_y
-        Change from pixel to pixel, shape (1 + K, T).
-    least
-        The least 1 / depth or depth of all corners, below which no rounding must lead.
-    """
-
-    origin: Places
-    sides: Places
-    area: Array
-    value: Array
-    rises: tuple[Array, Array]
-    along_x: Array
-    along_y: Array
-    least: float
-
-
-def planes_through(x: Places, y: Places, values: Array) -> Planes:
-    """Lay planes through the corners' values.
+def fragments_of(run: Run, tolerance: float, alone: bool) -> Fragments:
+    """Give all the pixels of a run's spans, in their order.
 
     Parameters
     ----------
-    x, y
-        Corners in sub-pixels, shape (3, T), of an area that is not 0.
-    values
-        Shape (1 + K, 3, T).
+    run
+        The spans, at least one.
+    tolerance, alone
+        As of `Fragments`.
 
     Returns
     -------
-    The planes.
+    The fragments.
     """
-    x1, x2, y1, y2 = x[1] - x[0], x[2] - x[0], y[1] - y[0], y[2] - y[0]
-    area = (x1 * y2 - x2 * y1).astype(np.float64)
-    scale = SUBPIXEL / area
-    first = values[:, 0]
-    rise1, rise2 = values[:, 1] - first, values[:, 2] - first
-    along_x = (rise1 * y2 - rise2 * y1) * scale
-    along_y = (rise2 * x1 - rise1 * x2) * scale
-    least = float(values[0].min(initial=np.inf))
-    origin, sides = np.stack([x[0], y[0]]), np.stack([x1, y1, x2, y2])
-    rises = rise1, rise2
-    return Planes(origin, sides, area, first, rises, along_x, along_y, least)
-
-
-@dataclass(frozen=True, eq=False)
-class View:
-    """How depths are kept: a pinhole or not, near and far."""
-
-    pinhole: bool
-    near: float
-    far: float | None
-
-    def depth(self, first: Array) -> Array:
-        """Give what the depth test compares, in [0, 1], from 1 / depth or depth."""
-        near, far = self.near, self.far
-        if self.pinhole:
-            share = 1.0 if far is None else far / (far - near)
-            depth = share - (share * near) * first
-        elif far is None:
-            depth = np.zeros_like(first)  # never tested
-        else:
-            depth = (first - near) * (1.0 / (far - near))
-        np.maximum(depth, 0.0, out=depth)
-        return np.minimum(depth, 1.0, out=depth)
-
-
-@dataclass(frozen=True, eq=False)
-class Run:
-    """Spans, and what is linear along them.
-
-    Attributes
-    ----------
-    spans
-        Of R stretches of pixels.
-    planes
-        What is linear over the triangles.
-    source, front
-        Which of the mesh's faces each triangle is, and which side of it is seen.
-    view
-        How depths are kept.
-    """
-
-    spans: Spans
-    planes: Planes
-    source: Indices
-    front: NDArray[np.bool_]
-    view: View
-
-    @functools.cached_property
-    def start(self) -> Array:
-        """Give the planes in the middle of each span's first pixel, (1 + K, R)."""
-        planes, spans = self.planes, self.spans
-        x, y = (
-            SUBPIXEL * place + HALF - origin.take(spans.triangle)
-            for place, origin in zip(
-                (spans.first, spans.row), planes.origin, strict=True
-            )
-        )
-        x1, y1, x2, y2 = planes.sides.take(spans.triangle, axis=1)
-        area = planes.area.take(spans.triangle)
-        start = planes.value.take(spans.triangle, axis=1)
-        shares = (x * y2 - y * x2) / area, (y * x1 - x * y1) / area
-        for share, rise in zip(shares, planes.rises, strict=True):
-            start += share * rise.take(spans.triangle, axis=1)
-        return start
-
-    @functools.cached_property
-    def step(self) -> Array:
-        """Give their change from column to column, shape (1 + K, R)."""
-        return self.planes.along_x.take(self.spans.triangle, axis=1)
-
-    def each(self, of_span: NDArray[Any]) -> Any:
-        """Give the spans' numbers, shape (..., R), for each pixel, shape (..., n)."""
-        return np.repeat(of_span, self.spans.count, axis=-1)
-
-    def fragments(self, tolerance: float, alone: bool) -> Fragments:
-        """Give all the pixels of the spans, in their order."""
-        count = self.spans.count
-        begin = self.spans.first - (np.cumsum(count) - count)
-        column = self.each(begin)
-        column += np.arange(len(column))
-        return Fragments(self, column, tolerance, alone)
+    count = run.spans.count.astype(np.int32)
+    ends = np.cumsum(count, dtype=np.int32)
+    before = np.arange(ends[-1], dtype=np.int32)
+    before -= run.each(ends - count)
+    return Fragments(run, before.astype(np.float64), tolerance, alone)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,8 +44,8 @@ class Fragments:
     ----------
     run
         What they are pixels of.
-    column
-        Of each pixel, shape (n,).
+    before
+        How many pixels of its stretch lie before each, shape (n,).
     tolerance
         By how much colours may be off, units of displayed white.
     alone
@@ -183,21 +56,30 @@ class Fragments:
     """
 
     run: Run
-    column: Indices
+    before: Array
     tolerance: float
     alone: bool
     some: Indices | None = None
 
+    def __len__(self) -> int:
+        """Count them."""
+        return len(self.before)
+
     def of(self, some: Indices | slice) -> Fragments:
         """Give some of them."""
-        if isinstance(some, slice) and some == slice(0, len(self.column)):
+        if isinstance(some, slice) and some == slice(0, len(self)):
             return self
         how = self.tolerance, self.alone, self._span[some]
-        part = Fragments(self.run, self.column[some], *how)
-        for known in ("_first", "_across"):  # where the depth test has asked for them
+        part = Fragments(self.run, self.before[some], *how)
+        for known in ("_first", "column"):  # where they have been asked for
             if known in self.__dict__:
                 part.__dict__[known] = self.__dict__[known][some]
         return part
+
+    @functools.cached_property
+    def column(self) -> Indices:
+        """Give the column of each pixel, shape (n,)."""
+        return self._each(self.run.spans.first) + self.before.astype(np.int64)
 
     @property
     def row(self) -> Indices:
@@ -206,12 +88,13 @@ class Fragments:
 
     def pixel(self, width: int) -> Indices | slice:
         """Give row times width plus column of each; a slice where they are one."""
-        ends = self.run.spans.row[[0, -1]] * width + self.column[[0, -1]]
-        if self.alone and ends[1] - ends[0] == len(self.column) - 1:
-            return slice(int(ends[0]), int(ends[1]) + 1)
-        found = self._each(self.run.spans.row * width)
-        found += self.column
-        return found
+        spans = self.run.spans
+        begin = spans.row * width + spans.first
+        if self.alone and self.some is None:
+            start, stop = int(begin[0]), int(begin[-1] + spans.count[-1])
+            if stop - start == len(self):
+                return slice(start, stop)
+        return self._each(begin) + self.before.astype(np.int64)
 
     @property
     def triangle(self) -> Indices:
@@ -236,9 +119,9 @@ class Fragments:
     @functools.cached_property
     def values(self) -> Array:
         """Give the attributes, perspective-correct, shape (K, n)."""
-        found = np.empty((len(self.run.start) - 1, len(self.column)))
+        found = np.empty((len(self.run.start) - 1, len(self)))
         for k, row in enumerate(found, start=1):
-            row[:] = self._linear(k)
+            self._linear(k, row)
             if self.run.view.pinhole:
                 row *= self.away
         return found
@@ -259,19 +142,12 @@ class Fragments:
         return self._each(np.arange(len(self.run.spans.row)))
 
     @functools.cached_property
-    def _across(self) -> Array:
-        across = self.column - self._each(self.run.spans.first)
-        return across.astype(np.float64)
-
-    @functools.cached_property
     def _first(self) -> Array:
-        found = self._linear(0)
-        return np.maximum(found, self.run.planes.least, out=found)
+        return held(self._linear(0), self.run.planes.least)
 
-    def _linear(self, k: int) -> Array:
+    def _linear(self, k: int, out: Array | None = None) -> Array:
         """Evaluate a plane at the pixels' centres."""
-        found = self._each(self.run.step[k])
-        found *= self._across
+        found = np.multiply(self._each(self.run.step[k]), self.before, out=out)
         found += self._each(self.run.start[k])
         return found
 

@@ -80,7 +80,7 @@ def _passing(store: Store, state: State, pixel: Some, depth: Array) -> Some:
     assert store.depth is not None
     assert state.depth_func is not None
     passed = DEPTH_FUNCS[state.depth_func](depth, store.depth[pixel])
-    seen = _all(np.flatnonzero(passed), len(depth))
+    seen = slice(0, len(depth)) if passed.all() else np.flatnonzero(passed)
     if state.depth_mask:
         store.depth[places(pixel, seen)] = depth[seen]
     return seen

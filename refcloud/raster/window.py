@@ -63,7 +63,9 @@ def scale_of(camera: AnyCamera) -> float:
     return camera.height / camera.height_of_view
 
 
-def planes_of(camera: AnyCamera, near: float, far: float | None = None) -> Array:
+def planes_of(
+    camera: AnyCamera, near: float, far: float | None = None, guard: float = GUARD
+) -> Array:
     """Give the planes that cut geometry, the near one first.
 
     Parameters
@@ -72,6 +74,8 @@ def planes_of(camera: AnyCamera, near: float, far: float | None = None) -> Array
         Pinhole or orthographic.
     near, far
         Depths of the near and the far plane, scene units; None for no far one.
+    guard
+        How far beside the window the other planes lie, pixels.
 
     Returns
     -------
@@ -79,7 +83,7 @@ def planes_of(camera: AnyCamera, near: float, far: float | None = None) -> Array
     inside.
     """
     scale = scale_of(camera)
-    aside, above = 0.5 * camera.width + GUARD, 0.5 * camera.height + GUARD
+    aside, above = 0.5 * camera.width + guard, 0.5 * camera.height + guard
     pinhole = isinstance(camera, Camera)
 
     def side(right: float, up: float, reach: float) -> list[float]:

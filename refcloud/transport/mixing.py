@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from refcloud.products import dot
 
 Reals = NDArray[np.floating[Any]]
 
@@ -85,7 +88,7 @@ def fixed_point(
             changes.append((residual - last[0], given - last[1]))
             changes = changes[-memory:]
             gram = _gram(gram[-(memory - 1) :, -(memory - 1) :], changes)
-            right = np.array([_dot(r, residual) for r, _ in changes])
+            right = np.array([dot(r, residual) for r, _ in changes])
             ridge = RIDGE * np.trace(gram) * np.eye(len(gram))
             for share, (_, moved) in zip(
                 np.linalg.lstsq(gram + ridge, right, rcond=None)[0],
@@ -101,14 +104,10 @@ def _gram(old: Any, changes: list[tuple[Reals, Reals]]) -> Any:
     n = len(changes)
     gram = np.zeros((n, n))
     gram[: n - 1, : n - 1] = old[-(n - 1) :, -(n - 1) :] if n > 1 else 0.0
-    gram[n - 1] = [_dot(changes[-1][0], r) for r, _ in changes]
+    gram[n - 1] = [dot(changes[-1][0], r) for r, _ in changes]
     gram[:, n - 1] = gram[n - 1]
     return gram
 
 
-def _dot(a: Reals, b: Reals) -> float:
-    return float(np.vdot(a, b))
-
-
 def _norm(a: Reals) -> float:
-    return float(np.sqrt(_dot(a, a)))
+    return math.sqrt(dot(a, a))

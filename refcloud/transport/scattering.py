@@ -14,6 +14,7 @@ from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array, Colour, Tolerance, Vector, unit_vector
 from refcloud.optics import Medium, Sun
+from refcloud.products import product
 from refcloud.transport.cases import cases_of
 from refcloud.transport.cut_out import (
     beam_norms,
@@ -240,8 +241,9 @@ def source_toward(light: ScatteredLight, direction: Vector) -> Array:
     sources = []
     for kind, terms in enumerate(source_terms(light)):
         weights = harmonics_toward(light, w, kind).astype(terms.dtype)
+        toward = product(weights[None], terms.reshape(len(terms), -1))
         # A cut-off series may dip below 0 where hardly any light is.
-        sources.append(np.maximum(np.tensordot(weights, terms, axes=1), 0.0))
+        sources.append(np.maximum(toward.reshape(terms.shape[1:]), 0.0))
     return np.stack([f * sources[k][b] for k, b, f in light.channels], axis=-1)
 
 

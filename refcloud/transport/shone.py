@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.optics import Medium
+from refcloud.products import product
 from refcloud.transport.beams import Beams, next_to
 from refcloud.transport.delta_m import ScaledMedium, delta_m
 from refcloud.transport.directions import Directions
@@ -183,10 +184,10 @@ def sun_moments(
         return np.array(near, dtype).reshape(S, M)
 
     on = picked([sun.on - sun.once if more_than_once else sun.on for sun in suns])
-    found = (colours @ on).reshape(len(places), B, M)
+    found = product(colours, on).reshape(len(places), B, M)
     if all(sun.back is not None for sun in suns) and S:
         back = picked([sun.back for sun in suns if sun.back is not None])
-        against = (colours @ back).reshape(len(places), B, M)
+        against = product(colours, back).reshape(len(places), B, M)
         odd = degrees % 2 == 1  # harmonics of odd degree turn their sign with the beam
         against[odd] *= -1.0
         found += against

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.conventions import Array
+from refcloud.products import product
 from refcloud.transport.beams import Beams, Group
 
 Reals = NDArray[np.floating[Any]]
@@ -35,7 +36,7 @@ def swept_terms(terms: Reals, beams: Beams, to_source: Array, to_terms: Array) -
     if M == 0:
         return np.zeros((len(to_terms), B, 0), dtype)
     # One product for all directions; rows are then overwritten by what comes of them.
-    rows = np.matmul(to_source.astype(dtype), terms.reshape(R, -1), out=beams.gathered)
+    rows = product(to_source.astype(dtype), terms.reshape(R, -1), beams.gathered)
     for group in beams.groups:
         places = beams.places[group.axis]
         n, K = len(group.members), beams.shape[group.axis]
@@ -50,7 +51,7 @@ def swept_terms(terms: Reals, beams: Beams, to_source: Array, to_terms: Array) -
         )
         for line, values in zip(radiance, cases, strict=True):
             np.take(line, places, out=values, mode="clip")  # "raise" would buffer
-    return (to_terms.astype(dtype) @ rows).reshape(-1, B, M)
+    return product(to_terms.astype(dtype), rows).reshape(-1, B, M)
 
 
 def dense(values: Reals, beams: Beams) -> Reals:

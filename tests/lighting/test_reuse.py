@@ -10,7 +10,8 @@ import pytest
 from small_scenes import BACKDROP, BALLS, EXTENDED, EYE, LOOKS, MEDIUM, SUNS
 
 from refcloud.camera import Camera
-from refcloud.lighting import LitMetaballs, sunward
+from refcloud.lighting import LitMetaballs, eyeward, sunward
+from refcloud.lighting import lit as lit_module
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
 from refcloud.render import render
@@ -90,6 +91,23 @@ def test_l15_lit_balls_serve_any_eye_and_the_report_says_so() -> None:
         np.testing.assert_array_equal(picture.linear, fresh.linear)
         assert not [note for note in fresh.notes if "reused" in note]
     assert render(lit).linear.shape == (768, 1024, 3)  # framed as balls are
+
+
+def test_l15_gain_and_depths_are_found_once_for_all_eyes(monkeypatch) -> None:
+    asked: list[str] = []
+    for name in ("gain_of", "ball_depths"):
+        found = getattr(lit_module, name)
+        monkeypatch.setattr(
+            lit_module,
+            name,
+            lambda *args, name=name, found=found: asked.append(name) or found(*args),
+        )
+    lit = sunward(BALLS, SUNS, medium=MEDIUM, look=EXTENDED)
+    for eye in (EYE, SIDE, EYE):
+        eyeward(lit, eye)
+    assert sorted(asked) == ["ball_depths", "gain_of"]  # a grey medium has one depth
+    fresh = sunward(BALLS, SUNS, medium=MEDIUM, look=EXTENDED)
+    np.testing.assert_array_equal(eyeward(lit, SIDE)[0], eyeward(fresh, SIDE)[0])
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from twins.gradient import SETS, axes, fades, hashes, places, ways
 from twins.noise import coordinates, seeds
 
+from refcloud import products
 from refcloud.noise import (
     gradient,
     gradient_derivative,
@@ -257,7 +258,7 @@ def test_parts_and_tiles_of_a_grid_do_not_show(n: int, data, tile: int) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module("gradient_grid"), "MOST_BLENDED", 50)
         patch.setattr(module("bands"), "TILE", tile)
-        patch.setattr(module("bands"), "MOST_PRODUCTS", 20)
+        patch.setattr(products, "ONE_THREAD", 20)
         parts = gradient_grid(*lines, **how)
     np.testing.assert_allclose(parts, whole, rtol=0, atol=SAME)
 

@@ -16,7 +16,11 @@ from refcloud.raster.between import (
     STEP,
     TOGETHER,
     Samples,
+    fourth_differences,
+    halfway,
     inside,
+    largest_of_quarters,
+    largest_of_tiles,
     quarters,
     sampled,
 )
@@ -40,8 +44,17 @@ def between(lists, exact):
     at = exact[..., sampled()[0]]
     samples.put(lists, every, at[:, :3], at[:, 3:])
     inner = np.flatnonzero(inside(lists))
-    pixels, fourth = samples.between(lists, inner)
-    return inner, pixels.transpose(1, 0, 2), fourth
+    around = samples.around(lists, inner)
+    fourth = fourth_differences(around)
+    tiles = samples.either(largest_of_tiles(fourth))
+    quarters = [
+        largest_of_quarters(of)
+        for of in zip(*(samples.either(each) for each in fourth), strict=True)
+    ]
+    # A tile whose largest difference is small has no quarter with a larger one.
+    for of_tile, of_quarters in zip(tiles, quarters, strict=True):
+        assert (of_quarters <= of_tile).all()
+    return inner, halfway(around).transpose(1, 0, 2), quarters
 
 
 @pytest.mark.parametrize("degree", [(0, 0), (1, 2), (5, 5), (5, 0), (12, 0)])

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from twins.texture import drawn_texture
 
 from refcloud.raster import Texture, mip_levels, sample
+from refcloud.raster import texture as texture_module
 
 RAMP = np.arange(12.0).reshape(3, 4, 1)
 far_away = st.floats(-1e6, 1e6)
@@ -20,12 +21,12 @@ def centres(height: int, width: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", ["NEAREST", "LINEAR"])
-def teplaceat_their_centres_texels_are_themselves(name) -> None:
+def test_at_their_centres_texels_are_themselves(name) -> None:
     texture = Texture(RAMP, mag_filter=name)
     np.testing.assert_allclose(sample(texture, centres(3, 4)), RAMP, atol=1e-13)
 
 
-def teplacelinear_is_linear_between_centres() -> None:
+def test_linear_is_linear_between_centres() -> None:
     s, t = np.meshgrid(np.linspace(0.125, 0.875, 9), np.linspace(1 / 6, 5 / 6, 7))
     found = sample(Texture(RAMP), np.stack([s, t], axis=-1))[..., 0]
     np.testing.assert_allclose(found, 4 * s - 0.5 + 4 * (3 * t - 0.5), atol=1e-13)
@@ -33,7 +34,7 @@ def teplacelinear_is_linear_between_centres() -> None:
 
 @settings(max_examples=50)
 @given(st.data(), st.integers(-5, 5))
-def teplacewraps_have_their_period(data, turns) -> None:
+def test_wraps_have_their_period(data, turns) -> None:
     texels = np.arange(15.0).reshape(3, 5, 1)
     place = np.array([data.draw(st.integers(-64, 64)) / 64.0 for _ in "st"])
     for wrap, period in (("REPEAT", 1.0), ("MIRRORED_REPEAT", 2.0)):
@@ -50,7 +51,7 @@ def teplacewraps_have_their_period(data, turns) -> None:
 
 
 @given(st.data(), far_away, far_away)
-def teplacea_lookup_stays_between_the_texels(data, s, t) -> None:
+def test_a_lookup_stays_between_the_texels(data, s, t) -> None:
     texture, _ = drawn_texture(data.draw)
     found = sample(texture, [s, t], level=data.draw(st.floats(-3.0, 9.0)))
     assert found.min() >= texture.texels.min() - 1e-12
@@ -58,7 +59,7 @@ def teplacea_lookup_stays_between_the_texels(data, s, t) -> None:
 
 
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(1, 4))
-def teplaceevery_level_keeps_the_mean(height, width, depth) -> None:
+def test_every_level_keeps_the_mean(height, width, depth) -> None:
     texels = np.sin(np.arange(height * width * depth * 2.0))
     levels = mip_levels(texels.reshape(depth, height, width, 2))
     for level in levels:
@@ -67,7 +68,7 @@ def teplaceevery_level_keeps_the_mean(height, width, depth) -> None:
     assert levels[-1].shape == (1, 1, 1, 2)
 
 
-def teplacecodes_are_fractions_of_255_in_every_level() -> None:
+def test_codes_are_fractions_of_255_in_every_level() -> None:
     codes = np.array([[[0], [255]], [[1], [2]]], np.uint8)
     texture = Texture(codes, min_filter="LINEAR_MIPMAP_LINEAR")
     assert [level.ravel().tolist() for level in texture.levels] == [
@@ -76,7 +77,7 @@ def teplacecodes_are_fractions_of_255_in_every_level() -> None:
     ]
 
 
-def teplacef05_a_matrix_scrolls_and_scales() -> None:
+def test_f05_a_matrix_scrolls_and_scales() -> None:
     matrix = np.eye(4)
     matrix[0, 3], matrix[1, 1] = 0.25, 2.0
     moved = Texture(RAMP, matrix=matrix)
@@ -91,7 +92,7 @@ def teplacef05_a_matrix_scrolls_and_scales() -> None:
     np.testing.assert_allclose(found, same, atol=1e-13)
 
 
-def teplacef06_a_level_is_chosen_by_the_larger_change() -> None:
+def test_f06_a_level_is_chosen_by_the_larger_change() -> None:
     texels = np.zeros((8, 8, 1))
     texels[::2] = 1.0
     texture = Texture(texels, min_filter="NEAREST_MIPMAP_NEAREST", mag_filter="NEAREST")
@@ -101,6 +102,17 @@ def teplacef06_a_level_is_chosen_by_the_larger_change() -> None:
         for ways in ((step, none), (none, step)):
             found = sample(texture, at, along_x=ways[0], along_y=ways[1])
             assert found[0, 0] == shown
+
+
+def test_f06_levels_are_made_once(monkeypatch) -> None:
+    made = []
+    monkeypatch.setattr(
+        texture_module, "mip_levels", lambda t: made.append(1) or mip_levels(t)
+    )
+    texture = Texture(RAMP, min_filter="LINEAR_MIPMAP_LINEAR")
+    for level in (0.0, 0.5, 1.5, 9.0):
+        sample(texture, centres(3, 4), level=level)
+    assert len(made) == 1
 
 
 @pytest.mark.parametrize(
@@ -128,6 +140,6 @@ def teplacef06_a_level_is_chosen_by_the_larger_change() -> None:
         ),
     ],
 )
-def teplacerefusals_name_the_argument_in_one_line(call, message: str) -> None:
+def test_refusals_name_the_argument_in_one_line(call, message: str) -> None:
     with pytest.raises((ValueError, TypeError), match=rf"^{message}[^\n]*$"):
         call()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from twins.walls import listed, spots
 
 from refcloud.camera import Camera, OrthographicCamera, rays
 from refcloud.noise import uniform
+from refcloud.plain import triangles as plain
 from refcloud.raster import (
     Blending,
     Mesh,
@@ -85,6 +87,43 @@ def test_a_window_shows_its_part_of_a_triangle(corners) -> None:
     inside = (large[0] < 12) & (large[1] < 16)
     small = triangle_pixels(corners, **SIZE)
     assert listed(*small) == listed(large[0][inside], large[1][inside])
+
+
+@settings(max_examples=60)
+@given(st.randoms(use_true_random=False), st.sampled_from([2**11, 2**24, 2**29, 2**29]))
+def test_corners_far_away_are_told_exactly(chance, most) -> None:
+    # An edge so close by a pixel's centre that it spans the least area with it, 1. Its
+    # ends lie as far away as products are whole in float64, and further.
+    run, rise, *other = (chance.randint(most // 2, most) for _ in range(4))
+    run, rise = run // math.gcd(run, rise), rise // math.gcd(run, rise)
+    past, side = chance.choice([-1, 1]), chance.choice([-1, 1])
+    y = past * pow(run, -1, rise)
+    x = (run * y - past) // rise  # run y - rise x = past
+    center = 256 * np.array([chance.randint(0, 11), chance.randint(0, 11)]) + 128
+    start = center - (x, y)
+    third = side * other[0], -side * other[1]
+    corners = np.array([start, np.add(start, (run, rise)), third]) / 256.0
+    if chance.random() < 0.5:
+        corners[:, 0] = SIZE["width"] - corners[:, 0]
+    found = triangle_pixels(corners, **SIZE)
+    assert listed(*found) == plain.triangle_pixels(corners.tolist(), **SIZE)
+
+
+@settings(max_examples=30)
+@given(data=st.data())
+def test_what_lies_beside_the_window_is_left_out_unseen(data) -> None:
+    camera = drawn_camera(data.draw)
+    camera = type(camera)(**{**vars(camera), **SIZE})
+    corners = drawn_mesh(data.draw, 1), sphere_mesh(5, 4)
+    near = data.draw(st.sampled_from([1e-3, 0.5]))
+
+    def pictures() -> list[np.ndarray]:
+        return [drawn(mesh, WHITE, camera, state=SUM, near=near) for mesh in corners]
+
+    found = pictures()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(triangles, "BESIDE", 8192.0)  # where triangles are cut anyhow
+        np.testing.assert_array_equal(found, pictures())
 
 
 @settings(max_examples=60)

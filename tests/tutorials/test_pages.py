@@ -12,7 +12,7 @@ import pytest
 from refcloud.image import read_png
 
 PATHS = page.tutorials()
-LONGEST = 150  # lines with something on them
+LONGEST = 150  # lines, blank ones too
 WIDEST, MOST_BYTES = 640, 8_000_000  # pixels, and the folder of pictures
 PARTS = ("## One formula", "## Where this breaks", "## Exercises", "## Solutions")
 
@@ -31,20 +31,24 @@ def test_the_list_is_fresh_and_complete() -> None:
     stored = (page.HERE / "README.md").read_text("utf-8")
     assert stored == page.index(), "run python tutorials/page.py"
     assert [path.name[:2] for path in PATHS] == [f"{n:02}" for n in range(1, 18)]
+    readme = (page.HERE.parent / "README.md").read_text("utf-8")
+    assert page.table("tutorials/") in readme, "README's table is that of the list"
 
 
 @pytest.mark.parametrize("path", PATHS, ids=stem)
 def test_every_tutorial_has_its_parts(path: Path) -> None:
     text = path.read_text("utf-8")
-    filled = [line for line in text.splitlines() if line.strip(" #")]
-    assert len(filled) <= LONGEST, f"{len(filled)} lines"
+    lines = len(text.splitlines())
+    assert lines <= LONGEST, f"{lines} lines"
     for part in PARTS:
         assert f"\n# {part}" in text, part
     assert re.search(
         r"^# \*[^*]+\?\*$|^# \*[^*]+\n(# [^*\n]+\n)*# [^*\n]*\?[^*]*\*$", text, re.M
     )
     shown = [method for _, body in page.cells(text) for method, _ in _calls(body)]
-    assert "source" in shown, "the library's own code is shown"
+    sources = set(re.findall(r"^From \[`refcloud/(\w+)", page.page_of(path), re.M))
+    assert "plain" in sources, "the plain form is shown from the library"
+    assert sources - {"plain"}, "the array form is shown from the library"
     assert {"strip", "row"} & set(shown), "a strip of the main knob"
     exercises = text.split("## Exercises")[1].split("## Solutions")[0]
     assert re.findall(r"^# (\d)\. ", exercises, re.M) == ["1", "2", "3"]
@@ -109,7 +113,8 @@ def test_pictures_are_those_that_are_declared() -> None:
 
 def test_pages_link_to_each_other() -> None:
     for file in sorted(page.HERE.glob("*.md")):
-        for link in re.findall(r"\]\(([^)]+)\)", file.read_text("utf-8")):
+        text = re.sub(r"^```.*?^```$", "", file.read_text("utf-8"), flags=re.M | re.S)
+        for link in re.findall(r"\]\(([^)]+)\)", text):
             place, _, part = link.partition("#")
             target = page.HERE / place if place else file
             assert target.exists(), f"{file.name}: {link}"
