@@ -12,6 +12,7 @@ import refcloud.lighting
 import refcloud.metaballs
 import refcloud.noise
 import refcloud.raster
+from refcloud.bench.certificates import COUNTS
 
 README = (Path(__file__).parent.parent / "README.md").read_text("utf-8")
 ROOMS = (
@@ -41,6 +42,16 @@ def test_every_field_of_the_looks_exists() -> None:
     assert len(names) > 8
     for name in names:
         assert name in refcloud.Look.__dataclass_fields__, name
+
+
+def test_the_table_of_certificates_adds_up() -> None:
+    table = README.split("| scenes | drawn |")[1].split("\n\n")[0]
+    rows = [line.split("|")[1:-1] for line in table.splitlines()[2:]]
+    assert {name.strip(): int(drawn) for name, drawn, *_ in rows} == COUNTS
+    sums = [sum(int(row[k]) for row in rows) for k in (1, 2, 3)]
+    told = re.search(r"Of (\d+) pictures, (\d+) of them .*?, (\d+) was off", README)
+    assert told is not None
+    assert [int(number) for number in told.groups()] == sums
 
 
 def test_the_examples_run(

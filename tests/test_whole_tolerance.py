@@ -157,4 +157,8 @@ def test_the_figure_shows_what_was_asked_and_what_came_out(tmp_path) -> None:
     rows = timed(scenes_at(16, ASKED, PARTS), rounds=1)
     picture = load_picture(asked_figure(rows, tmp_path / "tolerance.png")).linear
     assert picture.shape == (360 + 26, 640, 3)  # two lines of the legend
+    # Scenes that no tolerance changes are left out: the legend grows no longer.
+    same = [Row(f"s{k}", r.name, r.timing, None, 0.0) for k in range(9) for r in rows]
+    again = load_picture(asked_figure([*rows, *same], tmp_path / "b.png")).linear
+    assert again.shape == picture.shape
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 10

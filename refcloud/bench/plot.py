@@ -14,7 +14,8 @@ from refcloud.bench.timing import Row
 
 # Pixels of the figure, and dots to an inch: about as wide as a page.
 WIDTH, HEIGHT, DENSITY = 640, 480, 100
-ROW = 12  # pixels of a line of the legend, which stands below
+ROW = 13  # pixels of a line of the legend, which stands below
+COLUMNS, MANY = 2, 16  # of the legend; twice as many where it has more entries
 LEAST_ERROR = 1e-17  # below it, and at 0, an error is as good as none
 MARKS = "osD^v<>pP*X"
 COLOURS = 10  # that the figures tell apart
@@ -55,7 +56,8 @@ def plot(subject: Subject, rows: Sequence[Row], path: str | os.PathLike[str]) ->
     names = list(dict.fromkeys(row.name for row in shown))
     tasks = list(dict.fromkeys(row.task for row in shown))
     entries = len(names) + (0 if subject.one_task else len(tasks))
-    below = ROW * (entries + 1) // 2
+    columns = COLUMNS if entries <= MANY else 2 * COLUMNS
+    below = ROW * (1 - entries // -columns)
     size = WIDTH / DENSITY, (HEIGHT + below) / DENSITY
     figure = figures.Figure(size, dpi=DENSITY)
     axes = figure.add_subplot()
@@ -90,7 +92,7 @@ def plot(subject: Subject, rows: Sequence[Row], path: str | os.PathLike[str]) ->
     axes.set(xscale="log", yscale="log", ylabel="error", title=subject.name)
     axes.set_xlabel(f"CPU time, {subject.unit.name}")
     axes.grid(True, which="both", linewidth=0.3)
-    figure.legend(fontsize=6, ncols=2, loc="lower center", frameon=False)
+    figure.legend(fontsize=6, ncols=columns, loc="lower center", frameon=False)
     figure.tight_layout(rect=(0.0, below / (HEIGHT + below), 1.0, 1.0))
     figure.savefig(path, metadata={"Software": None})
     return Path(path)

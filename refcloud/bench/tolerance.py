@@ -21,6 +21,8 @@ from refcloud.scene import SCENES, Model, View
 
 WIDTH, QUICK_WIDTH = 128, 16
 LARGE = 320  # pixels of width of whole scenes, a quick look's
+# Of light of every order, whose exact picture at 320 pixels takes a minute.
+MOST = {"multiple": 80}
 SCENE_ASKED = (1e-2, 1.0 / 255.0, 1e-3)
 KINDS = ("proved", "certified", "measured")
 # What the last drawing of a scene to a tolerance told.
@@ -35,6 +37,7 @@ def model_of(name: str) -> Model:
 
 def drawn(name: str, width: int, tolerance: float) -> Picture:
     """Draw a scene of 4 to 3 from clouds that are made already."""
+    width = min(width, MOST.get(name, width))
     view = View(width, max(width * 3 // 4, 1), tolerance=tolerance)
     return SCENES[name].draw(model_of(name), view)
 
@@ -122,7 +125,10 @@ def asked_and_measured(rows: Sequence[Row]) -> str:
     return "\n".join(["", *columns(lines, 1)])
 
 
-ABOUT = "CPU time of drawing, medians; error: largest of a channel, in displayed white"
+ABOUT = (
+    "CPU time of drawing, medians; error: largest of a channel, in displayed white;"
+    f" multiple {MOST['multiple']} pixels wide at most"
+)
 EXACT = "tolerance 0; of light scattered many times the finest solution on its grid"
 
 TOLERANCE = Subject(

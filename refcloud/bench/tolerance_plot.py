@@ -24,7 +24,7 @@ def asked_of(row: Row) -> float | None:
 
 
 def asked_figure(rows: Sequence[Row], path: str | os.PathLike[str]) -> Path:
-    """Draw both panels, a line for each scene.
+    """Draw both panels, a line for each scene that a tolerance changes.
 
     Parameters
     ----------
@@ -39,6 +39,9 @@ def asked_figure(rows: Sequence[Row], path: str | os.PathLike[str]) -> Path:
     """
     figures = matplotlib_figures()
     exact = {row.task: row.timing.median for row in rows if asked_of(row) is None}
+    # Scenes that no tolerance changes have nothing to show, unless there are no others.
+    changed = {row.task for row in rows if row.error}
+    exact = {task: t for task, t in exact.items() if task in changed} or exact
     below = ROW * (1 - len(exact) // -ACROSS)
     size = WIDTH / DENSITY, (HEIGHT + below) / DENSITY
     figure = figures.Figure(size, dpi=DENSITY)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 from refcloud import bench
 from refcloud.bench import certificates, skipping, stability
 from refcloud.cli.options import FileOption, options_of
-from refcloud.cli.outputs import ready, say
+from refcloud.cli.outputs import printable, ready, say
 from refcloud.cli.parser import Command
 from refcloud.refusal import complaint
 
@@ -30,11 +31,14 @@ class Measurement:
         Rows for machines instead of a table.
     peers
         Other libraries and OpenGL as well, those that are installed.
+    only
+        Of certificates: one kind of scenes, all of them without it.
     """
 
     quick: bool = False
     json: bool = False
     peers: bool = False
+    only: certificates.Word | None = None
 
 
 OPTIONS = options_of(Measurement)
@@ -73,6 +77,9 @@ def run(words: Sequence[str]) -> int:
         expected = "one of " + ", ".join(NAMES)
         raise ValueError(complaint("WHAT", expected, repr(name)))
     how, figure = Measurement(**given.of(OPTIONS)), given.options.get(PLOT.flag)
+    if how.only is not None and name != CERTIFICATES:
+        advice = f"only {CERTIFICATES} has kinds"
+        raise ValueError(complaint("--only", f"none beside {name}", how.only, advice))
     if figure is not None:
         figure = ready(figure, FIGURES, PLOT.flag)
     if name == STABILITY:
@@ -88,8 +95,16 @@ def run(words: Sequence[str]) -> int:
     else:
         say(bench.table(subject, rows))
     if figure is not None:
-        say(str(bench.plot(subject, rows, figure)))
+        _name(bench.plot(subject, rows, figure), how)
     return 0
+
+
+def _name(figure: Path, how: Measurement) -> None:
+    """Print a figure's name; beside rows for machines it is no result."""
+    if how.json:
+        print(printable(str(figure), sys.stderr), file=sys.stderr)
+    else:
+        say(str(figure))
 
 
 def subjects() -> dict[str, str]:
@@ -108,7 +123,7 @@ def _certificates(how: Measurement, figure: Path | None) -> int:
         raise ValueError(
             complaint(PLOT.flag, "none beside certificates", "one", advice)
         )
-    found = certificates.tallies(how.quick)
+    found = certificates.tallies(how.quick, how.only)
     if how.json:
         rows = [{"kind": k, **dataclasses.asdict(t)} for k, t in found.items()]
         say(json.dumps(rows, indent=1))
@@ -126,7 +141,7 @@ def _stability(how: Measurement, figure: Path | None) -> int:
     else:
         say(stability.text_of(panels))
     if figure is not None:
-        say(str(stability.labelled_map(panels).save(figure, tone="none")))
+        _name(stability.labelled_map(panels).save(figure, tone="none"), how)
     return 0
 
 

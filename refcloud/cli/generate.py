@@ -47,7 +47,7 @@ def run(words: Sequence[str]) -> int:
     path = ready(given.named(name), SUFFIXES)
     stages = Stages()
     with stages.stage("generate"):
-        grid = generate(**chosen, observe=stages.watch)
+        grid = generate(**chosen)
     with stages.stage("save"):
         save_voxels(grid, path)
     notes = [describe(grid)]

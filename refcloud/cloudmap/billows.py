@@ -207,7 +207,7 @@ def billows(
     Raises
     ------
     ValueError
-        The grid would have more than 2^28 cells.
+        The grid would have more than 2^25 cells.
 
     Source: document D (N31, V09) on the shape of paper M's clouds (V05); an extension.
 

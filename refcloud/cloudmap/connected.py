@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy as np
 
 from refcloud.checking import checked
+from refcloud.cloudmap.voxels import steps_of
 from refcloud.conventions import Array, Range, Shape
 
 
@@ -40,8 +41,11 @@ def largest_part(
         return np.zeros_like(density)
     # Labels start as cell numbers; each round every cell takes the largest label
     # among itself and its neighbours, then the label of its label (pointer jumping),
-    # so that long winding parts need few rounds.
-    label = np.where(occupied, np.arange(1, density.size + 1).reshape(density.shape), 0)
+    # so that long winding parts need few rounds. Empty cells are labelled -1.
+    empty = ~occupied
+    number = np.int32 if density.size < 1 << 31 else np.int64
+    label = np.arange(density.size, dtype=number).reshape(density.shape)
+    label[empty] = -1
     while True:
         spread = label.copy()
         for axis in range(3):
@@ -51,13 +55,17 @@ def largest_part(
             a, b = tuple(ahead), tuple(behind)
             np.maximum(spread[a], label[b], out=spread[a])
             np.maximum(spread[b], label[a], out=spread[b])
-        spread[~occupied] = 0
-        flat = np.concatenate(([0], spread.ravel()))
-        spread = flat[spread]
+        spread[empty] = -1
+        for part in steps_of(len(label), label[0].size):
+            jumped = spread.reshape(-1)[spread[part]]
+            jumped[empty[part]] = -1
+            spread[part] = jumped
         if np.array_equal(spread, label):
             break
         label = spread
-    counts = np.bincount(label.ravel())
-    counts[0] = 0
+    del spread
+    counts = np.zeros(density.size, number)
+    for part in steps_of(len(label), label[0].size):
+        np.add.at(counts, label[part][occupied[part]], 1)
     largest = len(counts) - 1 - int(np.argmax(counts[::-1]))
     return np.where(label == largest, density, 0.0)

@@ -15,12 +15,12 @@ import numpy as np
 from refcloud.checking import checked, complaint
 from refcloud.cloudmap.box import spanned
 from refcloud.cloudmap.texture import THRESHOLD
-from refcloud.cloudmap.voxels import MOST_VOXELS, VoxelGrid
+from refcloud.cloudmap.voxels import MOST_MADE, VoxelGrid
 from refcloud.conventions import Array, Range, Seed, Shape, Vector
 from refcloud.noise import worley_smooth_grid
 from refcloud.noise.worley_smooth import Detail, Octaves
 
-Count = Annotated[int, Range(1, MOST_VOXELS)]
+Count = Annotated[int, Range(1, MOST_MADE)]
 Length = Annotated[float, Range(1e-100, 1e100, "scene units")]
 Edge = (
     Annotated[float, Range(0.0, unit="scene units")]
@@ -56,7 +56,7 @@ def placed_texture(
     Raises
     ------
     ValueError
-        The box is flat, or there would be more than 2^28 cells.
+        The box is flat, or there would be more than 2^25 cells.
 
     Source: document D, Ray and Box intersection (V09, F09).
 
@@ -118,7 +118,7 @@ def box_cloud(
     Raises
     ------
     ValueError
-        The box is flat, or there would be more than 2^28 cells.
+        The box is flat, or there would be more than 2^25 cells.
 
     Source: document D, Generating Cloud Textures (N28, N31, V09); the coverage is an
     extension.
@@ -142,8 +142,10 @@ def box_cloud(
     cover = box_coverage(x, y, z, first=lower, second=upper, edge=edge)
     # remap(noise, 1 - w, 1, 0, c) with w = (1 - threshold) c: the slope is the same
     # everywhere, so nothing is divided by a coverage of 0.
-    density = cover - (1.0 - noise) / (1.0 - threshold)
-    return VoxelGrid(np.maximum(density, 0.0), lower, upper)
+    np.subtract(1.0, noise, out=noise)
+    noise /= 1.0 - threshold
+    np.subtract(cover, noise, out=noise)
+    return VoxelGrid(np.maximum(noise, 0.0, out=noise), lower, upper)
 
 
 @checked
@@ -205,7 +207,7 @@ def box_coverage(
 
 def _refuse_many(name: str, cells: float) -> None:
     """Refuse a grid of too many cells, before it is made."""
-    if not cells <= MOST_VOXELS:
+    if not cells <= MOST_MADE:
         raise ValueError(
-            complaint(name, f"at most {MOST_VOXELS} cells", f"{cells:.3g} cells")
+            complaint(name, f"at most {MOST_MADE} cells", f"{cells:.3g} cells")
         )

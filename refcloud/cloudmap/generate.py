@@ -11,7 +11,7 @@ from refcloud.checking import checked, complaint
 from refcloud.cloudmap.connected import largest_part
 from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
 from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
-from refcloud.cloudmap.voxels import MOST_VOXELS, VoxelGrid
+from refcloud.cloudmap.voxels import MOST_MADE, VoxelGrid, steps_of
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped
 from refcloud.noise import octave_bound, octave_sum_grid, uniform
 from refcloud.noise.weights import PEAKS
@@ -85,7 +85,8 @@ def generate(
     edge
         Width of the surface's rise from 0 to 1; for the cumulus shape.
     observe
-        Called with (name, value) for each intermediate.
+        Called with (name, value) for each intermediate; these are kept whole for it,
+        16 bytes a cell.
 
     Returns
     -------
@@ -95,7 +96,7 @@ def generate(
     Raises
     ------
     ValueError
-        The grid would have more than 2^28 cells.
+        The grid would have more than 2^25 cells.
 
     Source: paper M, eq 1 to 10; E11, E15.
 
@@ -127,35 +128,53 @@ def generate(
         quadrics, lower, upper = ellipsoid_volumes(diameters, ellipsoids, seed or 0)
     (x, y, z), origin = _lattice(lower, upper, voxel)
 
-    # 2. Noise on the grid (eq 1), with octaves finer than the cells left out.
-    noise, skipped = octave_sum_grid(
-        x / cell,
-        y / cell,
-        z / cell,
-        seed=seed,
-        octaves=octaves,
-        persistence=persistence,
-        interpolant=interpolant,
-        normalize=normalize,
-        absolute=False,
-        finest=voxel / cell,
-    )
-    watch("noise", noise)
+    # 2. Some layers at a time: noise (eq 1) with octaves finer than the cells left out,
+    # mapped into the ellipsoids.
+    density = np.empty((len(z), len(y), len(x)))
+    mapped = "depth" if shape == "cumulus" else "quadric"
+    names = () if observe is None else ("noise", mapped)
+    whole = {name: np.empty_like(density) for name in names}
+    skipped: tuple[Skipped, ...] = ()
+    for part in steps_of(len(z), len(y) * len(x)):
+        noise, skipped = octave_sum_grid(
+            x / cell,
+            y / cell,
+            z[part] / cell,
+            seed=seed,
+            octaves=octaves,
+            persistence=persistence,
+            interpolant=interpolant,
+            normalize=normalize,
+            absolute=False,
+            finest=voxel / cell,
+        )
+        if shape == "cumulus":
+            pile = {"centers": centers, "radii": radii, "least": -room}
+            inside = depth_inside(x, y, z[part], **pile)
+            density[part] = displace(inside, noise, y, relief=relief, edge=edge)
+        else:
+            inside = _largest_quadric(quadrics, x, y, z[part])
+            shares = {"threshold": threshold, "dynamics": dynamics}
+            density[part] = modulate(inside, np.abs(noise), **shares)
+        for name, value in zip(whole, (noise, inside), strict=False):
+            whole[name][part] = value
+    for name in names:
+        watch(name, whole.pop(name))
 
-    # 3. Map it into the ellipsoids.
+    # 3. A cumulus is one piece.
     if shape == "cumulus":
-        depth = depth_inside(x, y, z, centers=centers, radii=radii, least=-room)
-        watch("depth", depth)
-        density = largest_part(displace(depth, noise, y, relief=relief, edge=edge))
-    else:
-        points = np.stack(np.broadcast_arrays(*np.ix_(z, y, x))[::-1], axis=-1)
-        Q = evaluate_quadric(quadrics[0], points)
-        for q in quadrics[1:]:
-            np.maximum(Q, evaluate_quadric(q, points), out=Q)
-        watch("quadric", Q)
-        density = modulate(Q, np.abs(noise), threshold=threshold, dynamics=dynamics)
+        density = largest_part(density)
     watch("density", density)
     return _cropped(density, origin, voxel, skipped)
+
+
+def _largest_quadric(quadrics: list[Array], x: Array, y: Array, z: Array) -> Array:
+    """Give the largest of several quadrics at every place of a grid."""
+    points = np.stack(np.broadcast_arrays(*np.ix_(z, y, x))[::-1], axis=-1)
+    Q = evaluate_quadric(quadrics[0], points)
+    for q in quadrics[1:]:
+        np.maximum(Q, evaluate_quadric(q, points), out=Q)
+    return Q
 
 
 def ellipsoid_volumes(
@@ -197,13 +216,13 @@ def _lattice(
         first = np.floor(lower / voxel) - PADDING
         counts = np.ceil(upper / voxel) + PADDING - first
         total = float(np.prod(counts))
-    if not total <= MOST_VOXELS:
+    if not total <= MOST_MADE:
         raise ValueError(
             complaint(
                 "voxel",
-                f"a grid of at most {MOST_VOXELS} cells",
+                f"a grid of at most {MOST_MADE} cells",
                 f"{total:.3g} cells",
-                "choose a larger voxel or smaller diameters",
+                "choose a larger voxel or a smaller cloud",
             )
         )
     x, y, z = (
@@ -217,11 +236,15 @@ def _cropped(
     density: Array, origin: Array, voxel: float, skipped: tuple[Skipped, ...]
 ) -> VoxelGrid:
     """Cut the grid to its occupied cells and the padding around them."""
-    occupied = np.argwhere(density > 0.0)
-    if not len(occupied):
-        occupied = np.array([[n // 2 for n in density.shape]])
-    low = np.maximum(occupied.min(axis=0) - PADDING, 0)
-    high = np.minimum(occupied.max(axis=0) + 1 + PADDING, density.shape)
+    occupied = density > 0.0
+    ends = []
+    for axis, n in enumerate(density.shape):
+        others = tuple(k for k in range(3) if k != axis)
+        cells = np.flatnonzero(occupied.any(axis=others))
+        ends.append((cells[0], cells[-1]) if len(cells) else (n // 2, n // 2))
+    first, last = np.array(ends).T
+    low = np.maximum(first - PADDING, 0)
+    high = np.minimum(last + 1 + PADDING, density.shape)
     lower = (origin + low[::-1]) * voxel
     upper = (origin + high[::-1]) * voxel
     kept = density[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]

@@ -21,8 +21,8 @@ from refcloud.noise.worley_smooth import Detail, Octaves, Period
 # Where cloud begins: near the median of the noise (0.65 to two places, over seeds and
 # numbers of cells), so that about half of the box is filled.
 THRESHOLD = 0.65
-# 2^28 voxels are 645 along each side: the limit of `VoxelGrid`'s makers.
-Side = Annotated[int, Range(1, 645, "voxels")]
+# 2^25 voxels are 322 along each side: the limit of `VoxelGrid`'s makers.
+Side = Annotated[int, Range(1, 322, "voxels")]
 
 
 @checked

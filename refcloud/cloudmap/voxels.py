@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -11,6 +12,10 @@ from refcloud.checking import check_fields, checked
 from refcloud.conventions import Array, Range, Shape, Skipped, Vector
 
 MOST_VOXELS = 1 << 28  # 2 GiB of float64: larger grids are refused before allocation
+# Larger ones are not made: whoever makes one holds up to 32 bytes a cell at the worst
+# moment, 1 GiB in all.
+MOST_MADE = 1 << 25
+STEP = 1 << 20  # cells of a grid that are made at a time
 
 
 @dataclass(frozen=True, repr=False)
@@ -115,3 +120,16 @@ def cell_centres(grid: VoxelGrid) -> tuple[Array, Array, Array]:
         for low, edge, n in zip(grid.lower, size, grid.density.shape[::-1], strict=True)
     )
     return x, y, z
+
+
+def steps_of(layers: int, layer: int) -> Iterator[slice]:
+    """Cut a grid's layers into steps of at most STEP cells, one layer at the least.
+
+    Parameters
+    ----------
+    layers, layer
+        How many there are, and the cells in one.
+    """
+    thick = max(1, STEP // max(layer, 1))
+    for first in range(0, layers, thick):
+        yield slice(first, min(first + thick, layers))

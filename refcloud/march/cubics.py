@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.cloudmap import cell_size
+from refcloud.cloudmap.sample import clamped_trilinear
 from refcloud.conventions import Array
 from refcloud.transport import LightVolume
 
@@ -46,6 +47,19 @@ class Smooth:
             x, y, z = ((points[part] - self.lower) / self.size - 0.5 + RIM).T
             found[part] = read_cubics(self.table, (z, y, x))
         return found
+
+
+@dataclass(frozen=True)
+class Straight:
+    """Column densities to one sun, of a light volume, read along straight lines."""
+
+    volume: LightVolume
+
+    def columns(self, points: Array) -> Array:
+        """Interpolate the columns from points (M, 3) on, shape (M,)."""
+        size = cell_size(self.volume.grid) / self.volume.scale
+        places = ((points - self.volume.lower) / size - 0.5).T
+        return clamped_trilinear(self.volume.density, *places)
 
 
 def smooth_columns(volume: LightVolume) -> Smooth:

@@ -18,6 +18,7 @@ AT_ONCE = 2 * CHECKED  # rays that are looked at for it together
 DRAWN = 64 * CHECKED
 EDGES = 48  # rays where a picture is steepest
 LEVEL = 1e-6  # steps below it are taken together
+FOLLOWED = 64  # rays whose neighbours are looked at, in all rounds together
 
 
 def chosen_rays(task: Task) -> NDArray[np.intp]:
@@ -72,3 +73,47 @@ def edge_rays(picture: Array) -> NDArray[np.intp]:
         most = np.flatnonzero(steep > level)
     order = np.argsort(-steep[most], kind="stable")[:EDGES]
     return np.sort(most[order])
+
+
+def strides(met: int, checked: int) -> list[int]:
+    """Give how far to look around the worst rays, round after round.
+
+    Formula: half the distance between checked rays, sqrt(met / checked) / 2, then half
+    of that, and so on; next neighbours twice
+
+    Parameters
+    ----------
+    met, checked
+        How many rays meet density, and how many of them are checked.
+    """
+    stride, found = round(0.5 * float(np.sqrt(met / max(checked, 1)))), []
+    while stride > 1:
+        found.append(stride)
+        stride = (stride + 1) // 2
+    return [*found, 1, 1]
+
+
+def rays_around(
+    which: NDArray[np.intp], rows: tuple[int, int], stride: int
+) -> NDArray[np.intp]:
+    """Give the eight rays around each of some, `stride` rows and columns away.
+
+    Parameters
+    ----------
+    which
+        Numbers of rays.
+    rows
+        How many rows and columns of rays there are.
+    stride
+        How far away.
+
+    Returns
+    -------
+    Numbers of rays, ascending, each once.
+    """
+    away = np.array([-stride, 0, stride])
+    row, column = np.divmod(which[:, None, None], rows[1])
+    row, column = np.broadcast_arrays(row + away[:, None], column + away)
+    inside = (row >= 0) & (row < rows[0]) & (column >= 0) & (column < rows[1])
+    around = np.unique((row * rows[1] + column)[inside])
+    return np.setdiff1d(around, which, assume_unique=True)

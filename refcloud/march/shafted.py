@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array
-from refcloud.march.cubics import Smooth
+from refcloud.march.cubics import Smooth, Straight
 from refcloud.march.shafts import Shafts, shafts
 from refcloud.march.slices import single
 from refcloud.march.task import Task
@@ -53,7 +53,7 @@ def shafts_of(task: Task, cloud: VoxelGrid, finer: int) -> list[Shafts] | None:
 
 
 def shafted(
-    task: Task, tables: Sequence[Shafts | Smooth], points: int, least: float
+    task: Task, tables: Sequence[Shafts | Smooth | Straight], points: int, least: float
 ) -> tuple[Array, Array]:
     """Integrate rays with their light from tables that are read by cubics.
 

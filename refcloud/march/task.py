@@ -96,11 +96,17 @@ class Task:
         )
 
     def error(self, found: tuple[Array, Array], expected: tuple[Array, Array]) -> float:
-        """Give the largest difference of a channel; alpha is one where it is shown."""
+        """Give the largest difference of a channel of any ray."""
+        return float(self.errors(found, expected).max(initial=0.0))
+
+    def errors(
+        self, found: tuple[Array, Array], expected: tuple[Array, Array]
+    ) -> Array:
+        """Give each ray's largest difference; alpha is a channel where it is shown."""
         a, b = self.seen(*found), self.seen(*expected)
-        worst = float(np.abs(a[0] - b[0]).max(initial=0.0))
+        worst = np.abs(a[0] - b[0]).max(axis=1)
         if self.background is None:
-            worst = max(worst, float(np.abs(a[1] - b[1]).max(initial=0.0)))
+            worst = np.maximum(worst, np.abs(a[1] - b[1]).max(axis=1))
         return worst
 
     def exact(

@@ -43,6 +43,7 @@ Octaves = Annotated[int, Range(1, 16)]
 Period = Annotated[int, Range(1, 1 << 14)]
 
 FINER = 2  # cells of the finer noise's first octave to one of the scaffold
+STEP = 1 << 20  # samples of a grid in one step: tables of 8 MB
 
 
 @checked
@@ -148,9 +149,33 @@ def worley_smooth_grid(
     >>> worley_smooth_grid(np.arange(4) / 2, np.arange(3) / 2, period=2).shape
     (3, 4)
     """
-    w = worley_grid(x, y, z, seed=seed, period=period, normalize="clip", dtype=dtype)
+    axes = [a for a in (x, y, z) if a is not None]
+    out: Reals = np.empty([len(a) for a in axes[::-1]], dtype)
+    # Some planes at a time, across the longest axis: both noises are held some six
+    # times until they are one.
+    longest = int(np.argmax([len(a) for a in axes]))
+    thick = max(1, STEP * len(axes[longest]) // max(out.size, 1))
+    for first in range(0, len(axes[longest]), thick):
+        part = slice(first, first + thick)
+        some = list(axes)
+        some[longest] = axes[longest][part]
+        where = (slice(None),) * (len(axes) - 1 - longest) + (part,)
+        out[where] = _on_grid(some, seed, period, octaves, detail, dtype)
+    return out
+
+
+def _on_grid(
+    axes: list[Array],
+    seed: int,
+    period: int | None,
+    octaves: int,
+    detail: Detail,
+    dtype: DType,
+) -> Reals:
+    """Give the noise of a grid at once."""
+    w = worley_grid(*axes, seed=seed, period=period, normalize="clip", dtype=dtype)
     most = PERIOD if period is None else float(period)
-    places = [np.fmod(a, most) * FINER for a in (x, y, z) if a is not None]
+    places = [np.fmod(a, most) * FINER for a in axes]
     if detail == "smooth":
         finer: dict[str, Any] = {"octaves": octaves, "dtype": dtype}
         s = smooth_grid(*places, seed=seed, period=_finer(period), **finer)

@@ -14,11 +14,19 @@ from refcloud.cli import main
 
 
 @pytest.mark.parametrize("kind", get_args(Kind))
-def test_a_scene_is_drawn_again_by_its_number(kind: Kind) -> None:
+def test_a_scene_is_drawn_again_by_its_number(kind: Kind, monkeypatch) -> None:
+    monkeypatch.setattr(certificates, "LARGE", 40)
     off, tolerance, by_sample = drawn(kind, 3)
     assert (off, tolerance, by_sample) == drawn(kind, 3)
     assert 1e-4 <= tolerance <= 0.1
     assert 0.0 <= off <= tolerance + certificates.ROUNDED
+
+
+def test_each_kind_has_its_word() -> None:
+    for word, kind in certificates.KINDS.items():
+        assert word == kind.replace(", ", "-").replace(" ", "-")
+    assert list(certificates.COUNTS) == list(certificates.QUICK) == [*get_args(Kind)]
+    assert sum(certificates.COUNTS.values()) > 10_000
 
 
 def test_directions_are_even_over_the_sphere() -> None:
@@ -43,5 +51,11 @@ def test_the_command_counts(monkeypatch, capsys) -> None:
     assert main(["bench", "certificates", "--quick", "--json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)
     assert (row["kind"], row["scenes"], row["failed"]) == ("splats, man", 4, 0)
+    assert main(["bench", "certificates", "--quick", "--only", "splats-man"]) == 0
+    table = capsys.readouterr().out.splitlines()
+    assert len(table) == 2
+    assert table[1].split()[:3] == ["splats,", "man", "4"]
+    assert main(["bench", "noise", "--only", "march"]) == 2
+    assert "--only: expected none beside noise" in capsys.readouterr().err
     assert main(["bench", "certificates", "--plot", "a.png"]) == 2
     assert "--plot: expected none beside certificates" in capsys.readouterr().err

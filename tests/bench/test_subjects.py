@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 
 import numpy as np
 import pytest
 
 from refcloud.bench import SUBJECTS, blend, interpolants, kernels, passes
-from refcloud.bench.plot import front
+from refcloud.bench.plot import HEIGHT, ROW, front, plot
 from refcloud.bench.subject import Subject, run, table
-from refcloud.bench.timing import Contender, Row, timed
+from refcloud.bench.timing import Contender, Row, Timing, timed
+from refcloud.cli import main
+from refcloud.image import load_picture
 from refcloud.raster import seen_through_layers
 
 
@@ -115,6 +118,34 @@ def row_of() -> Row:
     """Time nothing, for a table."""
     (row,) = timed([Contender("task", "name", 1, lambda: 1.0, lambda: 1.0)], 1)
     return row
+
+
+@pytest.mark.slow  # the stage that has matplotlib
+def test_a_legend_of_many_has_four_columns_below_the_axis(tmp_path) -> None:
+    pytest.importorskip("matplotlib", reason="needs matplotlib (extra: bench)")
+    subject = Subject("s", "title", "about", ())
+    heights = {}
+    for tasks in (10, 40):
+        rows = [
+            Row(str(k), name, Timing(1.0 + k, 1.0, 50.0), None, error)
+            for k in range(tasks)
+            for name, error in (("one", 0.1), ("two", 0.0))
+        ]
+        found = load_picture(plot(subject, rows, tmp_path / "a.png"))
+        heights[tasks] = found.linear.shape[0] - HEIGHT
+    assert heights == {10: 7 * ROW, 40: 12 * ROW}
+
+
+@pytest.mark.slow  # the stage that has matplotlib
+def test_rows_for_machines_are_all_of_the_output(tmp_path, capsys) -> None:
+    pytest.importorskip("matplotlib", reason="needs matplotlib (extra: bench)")
+    name = str(tmp_path / "blend.png")
+    assert main(["bench", "blend", "--quick", "--json", "--plot", name]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)
+    assert name in err
+    assert main(["bench", "blend", "--quick", "--plot", name]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == name
 
 
 def test_peers_take_part_where_they_are_asked_for() -> None:

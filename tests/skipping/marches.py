@@ -109,6 +109,15 @@ def exact_columns_to_the_suns() -> Found:
     return Found(found, marched(sharp, camera)[0], rows)
 
 
+@proof("march", "Gauss points of a piece")
+def gauss_points_of_a_piece() -> Found:
+    sharp = VoxelGrid(1.0 * (BLOB.density > 0.2), [-1.2, -1.1, -1.3], [1.2, 1.1, 1.3])
+    camera = dataclasses.replace(FRONT, width=30, height=22)
+    with replaced("refcloud.march.sharp", SHAFTINGS=()):
+        found, rows = marched(sharp, camera, tolerance=2e-3)
+    return Found(found, marched(sharp, camera)[0], rows)
+
+
 def by_slabs(**switched_off: Any) -> tuple[np.ndarray, tuple]:
     """March few slabs in several stretches, so that each saving has its turn."""
     with (
