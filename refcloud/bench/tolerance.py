@@ -19,8 +19,10 @@ from refcloud.conventions import Array, Skipped
 from refcloud.image import Picture
 from refcloud.scene import SCENES, Model, View
 
-WIDTH, QUICK_WIDTH = 128, 16
-LARGE = 320  # pixels of width of whole scenes, a quick look's
+WIDTH, QUICK_WIDTH = 128, 16  # pixels; a quick look's
+LARGE = 320  # pixels of width of whole scenes
+# One scene of each kind that costs little: splats, a march, a sheet, triangles.
+QUICK_SCENES = ("man-10", "demand-lit", "shader-particles", "shader-dome")
 # Of light of every order, whose exact picture at 320 pixels takes a minute.
 MOST = {"multiple": 80}
 SCENE_ASKED = (1e-2, 1.0 / 255.0, 1e-3)
@@ -87,13 +89,17 @@ def scenes_at(
 
 
 def tolerances(width: int) -> list[Contender]:
-    """List every scene at every tolerance."""
-    return scenes_at(width, ASKED)
+    """List every scene at every tolerance; in a quick look's size a few."""
+    return scenes_at(width, ASKED, _names(width))
 
 
 def whole_scenes(width: int) -> list[Contender]:
-    """List every scene at a quick look's size."""
-    return scenes_at(width, SCENE_ASKED)
+    """List every scene at three tolerances; in a quick look's size a few."""
+    return scenes_at(width, SCENE_ASKED, _names(width))
+
+
+def _names(width: int) -> Sequence[str] | None:
+    return QUICK_SCENES if width == QUICK_WIDTH else None
 
 
 def asked_and_measured(rows: Sequence[Row]) -> str:
