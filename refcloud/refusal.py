@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,15 @@ def kind_name(kind: Any) -> str:
     return {"str": "a text", "bool": "True or False", "Callable": "a function"}.get(
         name, f"a {name}"
     )
+
+
+def loading(value: Any) -> str:
+    """Say what to do with a file's name that came in the place of what it holds."""
+    if not isinstance(value, os.PathLike):
+        return ""
+    functions = "load_voxels, load_metaballs, load_levels or load_picture"
+    scene = "refcloud.declared.scene_from(load_scene(path)) for a .toml"
+    return f"load the file first: {functions}, {scene}"
 
 
 def describe(value: Any) -> str:

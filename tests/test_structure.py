@@ -16,6 +16,7 @@ LONGEST_FILE = 300
 FLOORS = (
     ("conventions", "references"),
     ("refusal",),
+    ("paths",),
     ("checking", "extremes"),
     ("files", "parameters"),
     ("noise", "optics", "camera", "image"),

@@ -32,6 +32,7 @@ from refcloud.declared.kinds import Changed, find_kind
 from refcloud.lighting import Look, named
 from refcloud.metaballs import approximate
 from refcloud.optics import Medium, Sun
+from refcloud.paths import refuse_path
 from refcloud.refusal import complaint, describe
 from refcloud.sky import Sky
 
@@ -63,6 +64,7 @@ def load_scene(path: str | Path) -> Declaration | Changed:
         It is no TOML, of another kind or version, or something in it does not fit; the
         line names the file, the table and the key.
     """
+    refuse_path("path", path)
     path = Path(path)
     if not path.exists():
         raise FileNotFoundError(f"{path}: expected a scene (.toml), got no such file")

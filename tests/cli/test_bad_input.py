@@ -106,7 +106,16 @@ BAD = {
     "generate -o a.txt": "--output: expected a name ending in .npz, got 'a.txt'",
     "generate -o folder.npz": "--output: expected a file's name, got the folder",
     f"generate -o {'n' * 300}.npz": "--output: expected a file that can be written",
-    "generate -o=": "--output: expected",
+    "generate -o=": "--output: expected a name, got an empty text",
+    "animate man-10 --frames 3 --turn-eye 10 -o=": "--output: .*, got an empty text",
+    "render man-10 -o=": "--output: expected a name, got an empty text",
+    "figure --all --output=": "--output: expected a name, got an empty text",
+    "scene man-10 -o=": "--output: expected a name, got an empty text",
+    "noise fbm -o=": "--output: expected a name, got an empty text",
+    "compare a.png a.png -o=": "--output: expected a name, got an empty text",
+    "approximate voxels.npz -o=": "--output: expected a name, got an empty text",
+    "approximate voxels.npz --picture=": "--picture: .*, got an empty text",
+    "bench noise --plot=": "--plot: expected a name, got an empty text",
     "approximate voxels.npz -o a.npy": "--output: expected a name ending in .npz",
     "approximate voxels.npz --picture a.jpg": "--picture: expected a name ending in",
     "approximate voxels.npz --picture no/a.png": "--picture: .* folder, got no; create",
@@ -193,6 +202,13 @@ def test_a_closed_folder_is_found_before_the_work(run, here, monkeypatch) -> Non
         status, _, err = run(*words)
         assert status == 2, err
         assert "(Permission denied); choose another name or folder" in err
+
+
+@pytest.mark.parametrize("line", ["render", "animate", "noise", "compare a.png"])
+def test_an_empty_argument_is_refused_as_such(line, run, here) -> None:
+    status, _, err = run(*line.split(), "")
+    assert status == 2
+    assert re.fullmatch(r"refcloud: \w+: expected a name, got an empty text\n", err)
 
 
 def test_a_file_name_may_hold_anything(run, here) -> None:
