@@ -140,7 +140,7 @@ def render(
     Raises
     ------
     ValueError
-        No scene has that name; the picture is over 64 megapixels; the backend is
+        No scene has that name; the picture is over 8.3 megapixels; the backend is
         missing.
 
     Source: paper M, section 4 (W03); document D (R02).

@@ -89,7 +89,7 @@ def read_png(path: str | Path) -> Codes:
     FileNotFoundError
         No such file.
     ValueError
-        Not a PNG, a damaged one, one of 16 bits, or one above 64 million pixels.
+        Not a PNG, a damaged one, one of 16 bits, or one above 8.3 million pixels.
 
     Source: the PNG specification.
     """
@@ -186,7 +186,7 @@ def check_size(path: str | Path, width: int, height: int) -> None:
     Raises
     ------
     ValueError
-        No pixels, or more than 64 million.
+        No pixels, or more than 8.3 million.
     """
     if not 1 <= width * height <= MOST_PIXELS:
         raise ValueError(
