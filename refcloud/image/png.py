@@ -131,7 +131,8 @@ def _check_png(path: str | Path, data: bytes) -> bool:
     width, height, depth, kind = struct.unpack(">IIBB", found[0][1][:10])
     check_size(path, width, height)
     if depth > 8:
-        raise ValueError(f"{path}: expected at most 8 bits a channel, got {depth}")
+        expected, advice = "at most 8 bits a channel", "save it again with 8 bits"
+        raise ValueError(complaint(f"{path}", expected, f"{depth}", advice))
     return kind in (GREY_ALPHA, RGB_ALPHA) or any(n == b"tRNS" for n, _ in found)
 
 
