@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -21,6 +24,27 @@ def refuse_beside(what: str, **given: object) -> None:
     for name, value in given.items():
         if value is not None:
             raise ValueError(complaint(name, f"none beside {what}", "one"))
+
+
+@contextmanager
+def within(where: str, **names: str) -> Iterator[None]:
+    """Put the place before what is refused inside, such as a file or a table in it.
+
+    Parameters
+    ----------
+    where
+        What stands before the argument's name.
+    names
+        What arguments are called at that place, by their own names.
+    """
+    try:
+        yield
+    except (ValueError, TypeError) as refusal:
+        text = str(refusal)
+        for name, other in names.items():
+            text = re.sub(rf"\b{name}\b", other, text)
+        kind = TypeError if isinstance(refusal, TypeError) else ValueError
+        raise kind(f"{where}{text}") from None
 
 
 def digits(number: float) -> str:

@@ -203,7 +203,7 @@ def _lattice(
                 "voxel",
                 f"a grid of at most {MOST_VOXELS} cells",
                 f"{total:.3g} cells",
-                "choose a larger voxel or smaller diameters",
+                "choose a larger voxel or a smaller cloud",
             )
         )
     x, y, z = (

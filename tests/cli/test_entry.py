@@ -132,7 +132,7 @@ def test_compare_names_the_worst_pixels_and_draws_them(run, pictures) -> None:
 
 @pytest.fixture
 def alphas(pictures: Path) -> Path:
-    """Give pictures of the same colours with an opaque alpha, and with a clear pixel."""
+    """Give the same colours with an opaque alpha, and with one clear pixel."""
     codes = np.dstack([read_png("grey.png"), np.full((4, 6), 255, np.uint8)])
     write_png("opaque.png", codes)
     codes[1, 2, 3] = 254
