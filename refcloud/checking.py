@@ -17,6 +17,7 @@ import os
 import types
 import typing
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Annotated, Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
@@ -212,7 +213,7 @@ def _check_union(
 
 def _is_path(hint: Any) -> bool:
     kind = typing.get_origin(hint) or hint
-    return isinstance(kind, type) and issubclass(kind, os.PathLike)
+    return kind in (Path, os.PathLike)
 
 
 def _check_tuple(

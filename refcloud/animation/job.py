@@ -184,9 +184,9 @@ def opened(folder: Path, job: Job, name: str, redraw: bool) -> list[int]:
         raise ValueError(
             complaint(
                 name,
-                f"an empty folder {folder}, or this job's frames in it",
+                f"{folder} to be empty, or to hold frames of the same job",
                 "frames that were drawn with other parameters",
-                "choose another name, or redraw them",
+                "choose another name, or give redraw to draw them anew",
             )
         )
     for path in there:

@@ -81,6 +81,8 @@ def load(path: str) -> Metaballs | VoxelGrid | Levels:
     FileNotFoundError, ValueError
         There is no such file, it is damaged, or of another kind.
     """
+    if not Path(path).exists():
+        raise FileNotFoundError(complaint(path, KINDS, "no such file"))
     if _is(VOXELS, path):
         return load_voxels(path)
     if _is(LEVELS, path):

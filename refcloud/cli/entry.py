@@ -13,6 +13,7 @@ import numpy as np
 
 import refcloud
 from refcloud.cli.outputs import printable
+from refcloud.cli.wording import as_typed
 from refcloud.refusal import complaint
 
 # Each command is a file of this room, imported when it is asked for.
@@ -93,7 +94,14 @@ def _run(words: list[str]) -> int:
         got = repr(name[:60]) if words else "none"
         advice = "see refcloud --help"
         raise ValueError(complaint("command", expected, got, advice))
-    return _module(name).run(rest)
+    module = _module(name)
+    try:
+        return module.run(rest)
+    except (ValueError, TypeError) as refusal:
+        command = getattr(module, "command", None)
+        if command is None:
+            raise
+        raise ValueError(as_typed(str(refusal), command().flags)) from None
 
 
 def _module(name: str) -> ModuleType:

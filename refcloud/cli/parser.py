@@ -72,6 +72,12 @@ class Command:
             self._flags |= {"-o", OUTPUT}
             self._parser.add_argument("-o", OUTPUT, metavar="FILE", help=output)
 
+    @property
+    def flags(self) -> dict[str, str]:
+        """Give the options by the names of the library's parameters."""
+        given = {option.name: option.flag for option in self._options.values()}
+        return {"path": OUTPUT, **given} if OUTPUT in self._flags else given
+
     def argument(self, name: str, text: str, *, optional: bool = False) -> None:
         """Add an argument; one that may be left out stands after all others."""
         self._arguments.append(name)

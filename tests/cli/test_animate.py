@@ -64,7 +64,11 @@ def test_a_scene_s_frames_are_kept(run, here: Path) -> None:
     assert ended.out.splitlines()[-1] == "frames"
     other = run(*line.replace("360", "90").split())
     assert other.status == 2
-    assert "choose another name, or redraw them" in other.err
+    assert other.err == (
+        "refcloud: --output: expected frames to be empty, or to hold frames of the same"
+        " job, got frames that were drawn with other parameters; choose another name,"
+        " or give --redraw to draw them anew\n"
+    )
     again = run(*line.replace("360", "90 --redraw").split())
     assert "frames: 2; the way does not close\n" in again.out
 

@@ -26,7 +26,7 @@ BAD = {
     "approximate balls.npz": "got format 'refcloud.metaballs'",
     "approximate flat.npz": r"density of shape \(D, H, W\), got .*\(2, 3\)",
     "approximate a.png": r"\.(npz|png): expected a .* \.npz",
-    "render none.npz": "got no such file",
+    "render none.npz": "none.npz: expected a cloud map, metaballs or .*, got no such",
     "render folder.npz": "got a folder",
     "render text.npz": r"text.npz: expected a cloud map, .*no whole .npz",
     "render truncated.npz": r"npz: expected a cloud map, .*no whole .npz",
@@ -61,13 +61,13 @@ BAD = {
     "animate man-10 --frames 0": r"--frames: .*\[1, 100000\], got 0",
     "animate man-10 --frames 3": r"moves: .* \(--turn-sun, --turn-eye, --wind\)",
     "animate demand-sky --frames 3": r"moves: .* \(none: it cannot move\)",
-    "animate demand-sky --frames 3 --turn-eye 9": "turn_eye: expected none for demand-",
+    "animate demand-sky --frames 3 --turn-eye 9": "--turn-eye: expected none for dem",
     "animate man-10 --frames 3 --time 0 1": "time: expected none for man-10, which",
     "animate man-10 --frames 3 --time 0": "--time: expected two numbers, got '0'",
     "animate man-10 --frames 3 --turn-eye 9 -o a.mp4": "ending in .png or .apng or",
     "animate man-10 --frames 3 --turn-eye 9 -o no/a": "a name in an existing folder",
     "animate balls.npz --frames 2 --turn-eye 9 --background transparent -o a.gif": (
-        "path: expected an opaque background in .gif"
+        "--output: expected an opaque background in .gif"
     ),
     # values
     "generate --octaves 0": r"--octaves: expected a whole number in \[1, 32\], got 0",
@@ -85,7 +85,7 @@ BAD = {
     "generate --diameters 1 -2 3": r"numbers in \[1e-100, 1e\+100\] .*, got -2 to 3",
     "generate --diameters 1 inf 3": "--diameters: expected finite numbers",
     "generate --diameters 1e300 1e300 1e300": "expected",
-    "generate --voxel 1e-9": "voxel: expected a grid of at most .* larger voxel",
+    "generate --voxel 1e-9": "--voxel: .* choose a larger --voxel or a sma",
     "generate --voxel -1e-3": r"--voxel: .*, got -0.001",
     "generate --seed 9223372036854775808": "--seed: expected a whole number in",
     f"generate --seed {'9' * 400}": "expected",
@@ -103,7 +103,7 @@ BAD = {
     f"{RENDER} --g 0.9 --phase rayleigh": "--g: expected none beside --phase rayleigh",
     "noise worley": r"KIND: .*, got 'worley'; did you mean worley_f1\?",
     "noise perlin": r"KIND: .*, got 'perlin'; did you mean gradient\?",
-    "approximate voxels.npz --least-radius 5e3": "overlap or least_radius: expected",
+    "approximate voxels.npz --least-radius 5e3": "--overlap or --least-radius: ",
     f"{RENDER} --sigma-t 1 2": "--sigma-t: expected a number or three numbers",
     f"{RENDER} --albedo 1.1": r"--albedo: .*\[0, 1\], got 1.1",
     f"{RENDER} --background blue": "sky or transparent or three numbers, got 'blue'",
@@ -126,6 +126,19 @@ BAD = {
     "approximate voxels.npz -o a.npy": "--output: expected a name ending in .npz",
     "approximate voxels.npz --picture a.jpg": "--picture: expected a name ending in",
     "approximate voxels.npz --picture no/a.png": "--picture: .* folder, got no; create",
+    "approximate voxels.npz --count 3 --tolerance 0.1": (
+        "^refcloud: --tolerance: expected none beside --count, got"
+    ),
+    "render voxels.npz --backend gl": (
+        "^refcloud: --backend: expected none beside --method march, got one; choose"
+        " --method splat, or leave --backend out$"
+    ),
+    f"{RENDER} --ambient 1 1 1": (
+        "^refcloud: --ambient: .*; choose --method march, or leave --ambient out$"
+    ),
+    f"{RENDER} --width 5000": r"^refcloud: --width: expected at most 8\.3 megapixels",
+    "render man-10 --method splat": "^refcloud: --method: expected none beside a scene",
+    "animate man-10 --frames 2 --turn-sun 9 --sun-axis 0 0 0": "^refcloud: --sun-axis:",
     "approximate voxels.npz --count 0": r"--count: .* in \[1, 1000000\], got 0",
     "approximate voxels.npz --count 1000000000": r"--count: .* got 1000000000; choose",
     "approximate voxels.npz --tolerance -1": r"--tolerance: .* in \(0, 1\), got -1",
