@@ -18,7 +18,7 @@ FLOORS = (
     ("refusal",),
     ("paths",),
     ("checking", "extremes"),
-    ("files", "parameters"),
+    ("files", "parameters", "processes"),
     ("noise", "optics", "camera", "image"),
     ("cloudmap", "drawing"),
     ("metaballs", "transport"),
