@@ -12,7 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
-from refcloud.checking import check_fields, checked
+from refcloud.checking import check_fields, checked, complaint
 from refcloud.conventions import (
     MOST_PIXELS,
     Array,
@@ -37,12 +37,11 @@ PARALLEL = 1e-12  # squared sine below which `up` gives no direction
 
 
 def refuse_large(width: int, height: int) -> None:
-    """Refuse a picture of over 64 megapixels, before anything is made for it."""
+    """Refuse a picture of over 8.3 megapixels, before anything is made for it."""
     if width * height > MOST_PIXELS:
-        raise ValueError(
-            f"width: expected at most {MOST_PIXELS / 1e6:.0f} megapixels, got"
-            f" {width} x {height}; make the picture smaller"
-        )
+        expected = f"at most {MOST_PIXELS / 1e6:g} megapixels with the height"
+        got, advice = f"{width} x {height}", "make the picture smaller"
+        raise ValueError(complaint("width", expected, got, advice))
 
 
 def _check_view(camera: Camera | OrthographicCamera) -> None:
@@ -70,7 +69,7 @@ class Camera:
     fov_y
         Vertical field of view, radians, in [1e-9, pi).
     width, height
-        Size of the picture, pixels; at most 64 megapixels together.
+        Size of the picture, pixels; at most 8.3 megapixels together.
     """
 
     eye: Vector
@@ -97,7 +96,7 @@ class OrthographicCamera:
     height_of_view
         Height of what the picture shows, scene units, above 0.
     width, height
-        Size of the picture, pixels; at most 64 megapixels together.
+        Size of the picture, pixels; at most 8.3 megapixels together.
     """
 
     eye: Vector

@@ -7,25 +7,30 @@ shapes and never prints an array's contents.
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import functools
 import inspect
 import math
 import numbers
 import operator
+import os
 import types
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Annotated, Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
 
 from refcloud.conventions import Array, MayBeNotFinite, Range, Shape
+from refcloud.paths import refuse_path
 from refcloud.refusal import (
     advice,
     complaint,
     describe,
     digits,
     kind_name,
+    loading,
     unit_of,
 )
 
@@ -87,7 +92,9 @@ def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None)
     if hint is None or hint is type(None):
         kind = type(None)
     if isinstance(kind, type) and not isinstance(value, kind):
-        raise TypeError(complaint(name, kind_name(kind), describe(value)))
+        raise TypeError(
+            complaint(name, kind_name(kind), describe(value), loading(value))
+        )
     return value
 
 
@@ -182,6 +189,8 @@ def _check_union(
 ) -> Any:
     if value is None and type(None) in members:
         return None
+    if isinstance(value, (str, os.PathLike)) and any(map(_is_path, members)):
+        refuse_path(name, value)
     refusals: list[Exception] = []
     for member in members:
         if member is type(None):
@@ -199,7 +208,12 @@ def _check_union(
     if right:
         got = str(right[0]).split(", got ", 1)[1].split("; ")[0]
     kind = ValueError if right else TypeError
-    raise kind(complaint(name, " or ".join(dict.fromkeys(marks)), got))
+    raise kind(complaint(name, " or ".join(dict.fromkeys(marks)), got, loading(value)))
+
+
+def _is_path(hint: Any) -> bool:
+    kind = typing.get_origin(hint) or hint
+    return kind in (Path, os.PathLike)
 
 
 def _check_tuple(
@@ -241,7 +255,8 @@ def checked(function: Callable[P, Result]) -> Callable[P, Result]:
         try:
             bound = signature.bind(*args, **kwargs)
         except TypeError as error:
-            raise TypeError(f"{function.__name__}: {error}") from None
+            near = _meant(kwargs, list(signature.parameters))
+            raise TypeError(f"{function.__name__}: {error}{near}") from None
         sizes: dict[str, int] = {}
         for name, value in bound.arguments.items():
             kind = signature.parameters[name].kind
@@ -250,6 +265,13 @@ def checked(function: Callable[P, Result]) -> Callable[P, Result]:
         return function(*bound.args, **bound.kwargs)
 
     return wrapper
+
+
+def _meant(given: Iterable[str], known: list[str]) -> str:
+    """Name the parameter that an unknown one is spelled like."""
+    unknown = [name for name in given if name not in known]
+    near = difflib.get_close_matches(unknown[0], known, 1) if unknown else []
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 def check_fields(instance: Any) -> None:

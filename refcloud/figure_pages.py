@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import base64
 import html
-import multiprocessing
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import numpy as np
 from refcloud.conventions import Skipped
 from refcloud.figure import DOCUMENTS, Drawn, Figure, find_figure
 from refcloud.files import write_atomically
+from refcloud.processes import workers
 from refcloud.references import DOCUMENTS as SOURCES
 from refcloud.refusal import complaint
 from refcloud.render import SIZES
@@ -176,16 +176,12 @@ def _drawn(
         for task in tasks:
             yield draw_figure(*task)
         return
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=context)
-    try:
+    with workers(min(jobs, len(tasks))) as pool:
         waiting: set[Future[Made]] = {pool.submit(draw_figure, *t) for t in tasks}
         while waiting:
             done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
             for future in done:
                 yield future.result()
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
 
 
 def page(rows: Sequence[Made], folder: Path) -> str:

@@ -18,6 +18,7 @@ import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Range, Shape
+from refcloud.paths import refuse_long
 
 # Kinds of array: numpy's letters for them, in words, and most bytes of one element.
 NUMBERS = ("iuf", "integers or floats", 8)
@@ -73,13 +74,14 @@ def write_atomically(
     b'cloud'
     """
     target = Path(path)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    refuse_long("path", target.name, len(temporary.name) - len(target.name))
     if not target.parent.is_dir():
         raise FileNotFoundError(
             f"{target}: expected an existing folder, got {target.parent}; create it"
         )
     if target.is_dir():
         raise ValueError(f"{target}: expected a file name, got a folder")
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with open(temporary, "wb") as file:
             write(file)

@@ -86,23 +86,25 @@ def noise_picture(
     (34, 34, 3)
     """
     along: Array = np.asarray((np.arange(size) + 0.5) * (cells / size), np.float64)
+    columns, rows = {"slice": (1, 1), "channels": (1 + CHANNELS, 1)}.get(
+        view, (octaves, 2)
+    )
+    _refuse_large(size, columns, rows)
     if view == "slice":
         return _shown([[_slice(kind, along, octaves, seed)]])
     if view == "channels":
         scales = [_slice(kind, along * 2.0**i, octaves, seed) for i in range(CHANNELS)]
         return _shown([[np.stack(scales, axis=-1), *scales]])
-    _refuse_wide(size, octaves)
     alone, sums = _octaves(kind, along, octaves, seed)
     return _shown([alone, sums])
 
 
-def _refuse_wide(size: int, octaves: int) -> None:
-    """Refuse too many panels for one picture before any is drawn."""
-    width, height = octaves * (size + GAP), 2 * (size + GAP)
-    if width * height > MOST_PIXELS:
-        expected = f"octaves side by side in {MOST_PIXELS / 1e6:.0f} megapixels"
-        got = f"{octaves} of {size} x {size}"
-        advice = "choose a smaller size or fewer octaves"
+def _refuse_large(size: int, columns: int, rows: int) -> None:
+    """Refuse too large panels for one picture before any is drawn."""
+    if columns * rows * (size + GAP) ** 2 > MOST_PIXELS:
+        expected = f"panels in a picture of {MOST_PIXELS / 1e6:g} megapixels"
+        got = f"{columns * rows} of {size} x {size}"
+        advice = "choose a smaller size" + (" or fewer octaves" if rows > 1 else "")
         raise ValueError(complaint("size", expected, got, advice))
 
 

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -20,6 +24,27 @@ def refuse_beside(what: str, **given: object) -> None:
     for name, value in given.items():
         if value is not None:
             raise ValueError(complaint(name, f"none beside {what}", "one"))
+
+
+@contextmanager
+def within(where: str, **names: str) -> Iterator[None]:
+    """Put the place before what is refused inside, such as a file or a table in it.
+
+    Parameters
+    ----------
+    where
+        What stands before the argument's name.
+    names
+        What arguments are called at that place, by their own names.
+    """
+    try:
+        yield
+    except (ValueError, TypeError) as refusal:
+        text = str(refusal)
+        for name, other in names.items():
+            text = re.sub(rf"\b{name}\b", other, text)
+        kind = TypeError if isinstance(refusal, TypeError) else ValueError
+        raise kind(f"{where}{text}") from None
 
 
 def digits(number: float) -> str:
@@ -51,6 +76,15 @@ def kind_name(kind: Any) -> str:
     return {"str": "a text", "bool": "True or False", "Callable": "a function"}.get(
         name, f"a {name}"
     )
+
+
+def loading(value: Any) -> str:
+    """Say what to do with a file's name that came in the place of what it holds."""
+    if not isinstance(value, os.PathLike):
+        return ""
+    functions = "load_voxels, load_metaballs, load_levels or load_picture"
+    scene = "refcloud.declared.scene_from(load_scene(path)) for a .toml"
+    return f"load the file first: {functions}, {scene}"
 
 
 def describe(value: Any) -> str:

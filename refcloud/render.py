@@ -89,7 +89,7 @@ def render(
         The eye; None frames the cloud, or takes the scene's own.
     width, height
         Size where no camera is given, pixels; by quality 320 x 240 or 1024 x 768. One
-        alone keeps that shape, 4 to 3.
+        alone keeps that shape, 4 to 3. At most 8.3 megapixels together.
     suns
         The lights, one or several; None for one from the front left, weaker for light
         that is solved.
@@ -140,7 +140,7 @@ def render(
     Raises
     ------
     ValueError
-        No scene has that name; the picture is over 64 megapixels; the backend is
+        No scene has that name; the picture is over 8.3 megapixels; the backend is
         missing.
 
     Source: paper M, section 4 (W03); document D (R02).

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -15,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+import refcloud as rc
 from refcloud import Metaballs, Picture, VoxelGrid
 from refcloud.checking import check, check_fields, checked, complaint
 from refcloud.conventions import (
@@ -404,3 +406,17 @@ def test_values_with_many_numbers_print_short() -> None:
         text = repr(value)
         assert len(text) < 80, text
         assert "\n" not in text, text
+
+
+def test_a_misspelled_parameter_is_named() -> None:
+    with pytest.raises(TypeError, match=r"^generate: .*'sed'; did you mean seed\?$"):
+        rc.generate(sed=7)  # pyright: ignore[reportCallIssue]
+    with pytest.raises(TypeError, match=r"^generate: .*argument 'zzz'$"):
+        rc.generate(zzz=7)  # pyright: ignore[reportCallIssue]
+
+
+@pytest.mark.parametrize("take", [rc.render, rc.approximate])
+def test_a_path_for_a_cloud_is_told_how_to_load_it(take) -> None:
+    line = r"^(cloud|grid): expected a .*, got a \w+; load the file first: load_voxels,"
+    with pytest.raises(TypeError, match=rf"{line}.*scene_from\(load_scene\(path\)\)"):
+        take(Path("x.toml"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import zipfile
 from pathlib import Path
 
@@ -11,7 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import refcloud as rc
 from refcloud.conventions import Shape
+from refcloud.declared import load_scene
 from refcloud.files import read_arrays, write_arrays, write_atomically
 
 SHAPES = {"points": Shape("N", 3), "values": Shape("N"), "name": Shape()}
@@ -103,6 +106,41 @@ def test_write_refuses_a_missing_folder_and_a_folder(tmp_path):
         write_atomically(tmp_path / "no" / "a", lambda file: None)
     with pytest.raises(ValueError, match="got a folder"):
         write_atomically(tmp_path, lambda file: None)
+
+
+@pytest.mark.parametrize(
+    ("name", "got"),
+    [
+        ("", "path: expected the name of a file or folder, got an empty text"),
+        ("a\0b.png", "path: expected the name of .*, got a text with a zero byte"),
+        ("n" * 300 + ".png", "path: expected a name of at most 255 bytes, got 304; "),
+        ("é" * 127 + ".png", "path: expected a name of at most 255 bytes, got 258; "),
+    ],
+)
+def test_names_that_no_system_takes_are_refused_by_every_door(
+    name, got, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    grid = rc.VoxelGrid(np.ones((1, 1, 1)), [0, 0, 0], [1, 1, 1])
+    for door in (
+        lambda: rc.Picture(np.zeros((1, 1, 3))).save(name),
+        lambda: rc.load_picture(name),
+        lambda: rc.save_voxels(grid, name),
+        lambda: rc.load_voxels(name),
+        lambda: rc.animate("man-10", name, frames=2, moves=rc.Moves(turn_eye=9.0)),
+        lambda: load_scene(name),
+        lambda: write_atomically(name, lambda file: None),
+    ):
+        with pytest.raises(ValueError, match=f"^{got}[^\n]*$"):
+            door()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_name_has_room_for_its_temporary_one(tmp_path):
+    room = len(f"..{os.getpid()}.part")
+    write_atomically(tmp_path / ("n" * (255 - room)), lambda file: None)
+    with pytest.raises(ValueError, match=f"at most {255 - room} bytes, got 255"):
+        write_atomically(tmp_path / ("n" * 255), lambda file: None)
 
 
 DAMAGED = {

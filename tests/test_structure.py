@@ -16,8 +16,9 @@ LONGEST_FILE = 300
 FLOORS = (
     ("conventions", "references", "products"),
     ("refusal",),
+    ("paths",),
     ("checking", "extremes"),
-    ("files", "parameters"),
+    ("files", "parameters", "processes"),
     ("noise", "optics", "camera", "image"),
     ("cloudmap", "drawing"),
     ("metaballs", "transport"),

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import inspect
 import re
+import signal
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from plots import curves
 from sheets import Sheet, sheet_of, side_by_side
@@ -65,6 +66,20 @@ class Lesson:
         self.folder: Path | None = Path() if mine else None
         self._columns = 0  # of the row that is being drawn
         self._started = time.perf_counter()
+        main = getattr(sys.modules["__main__"], "__file__", None)
+        if mine and main and Path(main).resolve() == script:
+            self._end_in_a_line()
+
+    def _end_in_a_line(self) -> None:
+        """Let Ctrl-C end the program with one line, wherever it is."""
+        name = Path(sys.argv[0]).name
+
+        def end(number: int, stack: object) -> NoReturn:
+            print(f"{name}: interrupted", file=sys.stderr)
+            raise SystemExit(INTERRUPTED)
+
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, end)
 
     def size(self, width: int, height: int) -> tuple[int, int]:
         """Give the size of a picture: as asked for, small in a row, smaller if quick.
@@ -205,6 +220,8 @@ class Lesson:
         if Run(**given.of(how)).sliders:
             import sliders
 
+            # The page is there until Ctrl-C, which is no failure.
+            signal.signal(signal.SIGINT, signal.default_int_handler)
             sliders.serve(picture, self.script.stem)
             raise SystemExit(0)
         return given.of(knobs)

@@ -115,6 +115,20 @@ def frame_path(folder: Path, index: int) -> Path:
     return folder / f"frame-{index:04}.png"
 
 
+def folder_of(path: Path) -> Path:
+    """Give the folder of an animation's frames: its own, or one beside its file."""
+    if path.is_dir() or not path.suffix:
+        return path
+    return path.with_name(f"{path.name}.frames")
+
+
+def held(folder: Path) -> list[Path]:
+    """Give the files of a folder that are frames by their names."""
+    if not folder.is_dir():
+        return []
+    return [path for path in folder.iterdir() if FRAME.fullmatch(path.name)]
+
+
 def places(path: Path, view: View, transparent: bool) -> tuple[Path, bool]:
     """Give the folder of the frames, and whether they become one file.
 
@@ -136,14 +150,12 @@ def places(path: Path, view: View, transparent: bool) -> tuple[Path, bool]:
     ValueError
         The format is unknown or cannot hold the frames, or there is no such place.
     """
-    if path.is_dir() or not path.suffix:
-        if path.exists() and not path.is_dir():
-            raise ValueError(complaint("path", "a folder", f"the file {path}"))
-        folder = path
-    else:
+    folder = folder_of(path)
+    if folder is not path:
         height, width = size_of(view)
         check_animation("path", path, width, height, transparent)
-        folder = path.with_name(f"{path.name}.frames")
+    elif path.exists() and not path.is_dir():
+        raise ValueError(complaint("path", "a folder", f"the file {path}"))
     if not folder.parent.is_dir():
         advice = "create it first"
         raise ValueError(
@@ -176,7 +188,7 @@ def opened(folder: Path, job: Job, name: str, redraw: bool) -> list[int]:
         The folder holds frames of another job.
     """
     folder.mkdir(exist_ok=True)
-    there = [path for path in folder.iterdir() if FRAME.fullmatch(path.name)]
+    there = held(folder)
     if _digest_in(folder) == job.digest and not redraw:
         wanted = {frame_path(folder, index): index for index in range(job.frames)}
         return sorted(wanted[p] for p in there if p in wanted and _whole(p, job))
@@ -184,9 +196,9 @@ def opened(folder: Path, job: Job, name: str, redraw: bool) -> list[int]:
         raise ValueError(
             complaint(
                 name,
-                f"an empty folder {folder}, or this job's frames in it",
+                f"{folder} to be empty, or to hold frames of the same job",
                 "frames that were drawn with other parameters",
-                "choose another name, or redraw them",
+                "choose another name, or give redraw to draw them anew",
             )
         )
     for path in there:

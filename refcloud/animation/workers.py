@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import signal
 from collections.abc import Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
     Executor,
     Future,
-    ProcessPoolExecutor,
     wait,
 )
 
 from refcloud.animation.frames import Frame, draw_frame, leave
 from refcloud.animation.job import Job, size_of
+from refcloud.processes import workers
 
 HELD_BYTES = 1 << 27  # of finished frames that wait for the writer
 LEAST_AHEAD, MOST_AHEAD = 4, 64  # frames that are asked for at one time
@@ -56,16 +54,8 @@ def drawn(
         finally:
             leave()
     else:
-        # Fresh processes, on every system: none inherits threads or locks.
-        pool = ProcessPoolExecutor(
-            min(jobs, len(missing)),
-            mp_context=multiprocessing.get_context("spawn"),
-            initializer=_ignore_interrupts,
-        )
-        try:
+        with workers(min(jobs, len(missing))) as pool:
             yield from _by(pool, job, missing)
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _by(executor: Executor, job: Job, missing: Sequence[int]) -> Iterator[Frame]:
@@ -94,8 +84,3 @@ def _by(executor: Executor, job: Job, missing: Sequence[int]) -> Iterator[Frame]
     finally:
         for future in waiting:
             future.cancel()
-
-
-def _ignore_interrupts() -> None:
-    """Leave Ctrl-C to the process that asked for the frames."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from refcloud.animation import Moves, Progress, animate
+from refcloud.animation.job import folder_of, held
 from refcloud.cli.clouds import find
 from refcloud.cli.docstrings import summary
 from refcloud.cli.options import Option, options_of
@@ -77,7 +78,7 @@ def run(words: Sequence[str]) -> int:
         if isinstance(value, Progress):
             stages.count(value.done, value.frames, value.left)
 
-    with stages.stage("frames"), _worded():
+    with stages.stage("frames"), _worded(), _going_on(path, own.get("redraw", False)):
         made = animate(
             cloud,
             path,
@@ -95,6 +96,23 @@ def run(words: Sequence[str]) -> int:
     notes.append(f"frames: {made.frames}{kept}; {end}")
     report([*notes, *made.notes], made.skipped, stages.line(), made.path)
     return 0
+
+
+@contextmanager
+def _going_on(path: Path, redraw: bool) -> Iterator[None]:
+    """Let an interrupt say where the frames are, if any, and how to go on from them."""
+    try:
+        yield
+    except KeyboardInterrupt as end:
+        frames = folder_of(path)
+        count = len(held(frames))
+        if count:
+            again = "the same command again" + (" without --redraw" if redraw else "")
+            verb = "frame is" if count == 1 else "frames are"
+            raise type(end)(
+                f"{count} {verb} in {frames}, and {again} goes on from there"
+            ) from None
+        raise
 
 
 @contextmanager

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from refcloud.cli.generate import describe as described_grid
 from refcloud.cloudmap import VoxelGrid, load_voxels
@@ -15,7 +17,7 @@ from refcloud.files import read_arrays
 from refcloud.metaballs import Levels, Metaballs, load_levels, load_metaballs
 from refcloud.metaballs.file import FORMAT as METABALLS
 from refcloud.metaballs.levels_file import FORMAT as LEVELS
-from refcloud.refusal import complaint
+from refcloud.refusal import complaint, within
 from refcloud.scenes import SCENES, Scene
 
 ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
@@ -53,7 +55,22 @@ def scene_of(what: str) -> Scene:
     FileNotFoundError, TypeError, ValueError
         There is no such file, or what it says does not fit.
     """
-    return SCENES[what] if what in SCENES else scene_from(load_scene(what))
+    if what in SCENES:
+        return SCENES[what]
+    scene = scene_from(load_scene(what))
+    eye, named = scene.motion.eye, partial(_of_file, what)
+    return dataclasses.replace(
+        scene,
+        model=partial(named, scene.model),
+        draw=partial(named, scene.draw),
+        motion=dataclasses.replace(scene.motion, eye=eye and partial(named, eye)),
+    )
+
+
+def _of_file(path: str, make: Callable[..., Any], *given: Any) -> Any:
+    """Let what refuses a file's scene while it is drawn name the file."""
+    with within(f"{path}: "):
+        return make(*given)
 
 
 def load(path: str) -> Metaballs | VoxelGrid | Levels:
@@ -64,6 +81,8 @@ def load(path: str) -> Metaballs | VoxelGrid | Levels:
     FileNotFoundError, ValueError
         There is no such file, it is damaged, or of another kind.
     """
+    if not Path(path).exists():
+        raise FileNotFoundError(complaint(path, KINDS, "no such file"))
     if _is(VOXELS, path):
         return load_voxels(path)
     if _is(LEVELS, path):

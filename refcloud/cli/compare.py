@@ -25,6 +25,7 @@ OPTIONS = options_of(compare_codes, without=("a", "b"))
 SHOWING = options_of(difference_picture)
 SUFFIXES = (".png", ".npy")
 SAME, DIFFERENT = 0, 1
+COLOURS, OPAQUE = 3, 255  # channels before the alpha, and its largest code
 
 
 def command() -> Command:
@@ -49,8 +50,14 @@ def run(words: Sequence[str]) -> int:
     first, second = given.arguments
     with stages.stage("load"):
         a, b = codes_of(first), codes_of(second)
+    notes: list[str] = []
+    if a.shape[2] != b.shape[2]:
+        # Only one of them has an alpha: without a meaning it is left out.
+        a = _without_alpha(a, first, second, notes)
+        b = _without_alpha(b, second, first, notes)
     if a.shape != b.shape:
-        raise ValueError(complaint(second, f"{_size(a)} as {first}", _size(b)))
+        advice = "only pictures of one size are compared"
+        raise ValueError(complaint(second, f"{_size(a)} as {first}", _size(b), advice))
     with stages.stage("compare"):
         found = compare_codes(a, b, **given.of(OPTIONS))
     if path is not None:
@@ -60,7 +67,7 @@ def run(words: Sequence[str]) -> int:
             )
             shown.save(path, tone="none", dither=False)
     say("same" if found.same else "different")
-    notes = [
+    notes += [
         f"largest difference: {found.worst} codes",
         f"pixels off: {100.0 * found.off_share:.4g} %",
     ]
@@ -77,6 +84,22 @@ def codes_of(path: str) -> np.ndarray:
     if Path(path).suffix.lower() == ".png":
         return read_png(path)
     return load_picture(path).codes(tone="none", dither=False)
+
+
+def _without_alpha(
+    codes: np.ndarray, path: str, other: str, notes: list[str]
+) -> np.ndarray:
+    """Leave out an opaque alpha, and say so; refuse one that lets light through."""
+    if codes.shape[2] == COLOURS:
+        return codes
+    clear = int(np.count_nonzero(codes[..., COLOURS] < OPAQUE))
+    if clear:
+        expected = f"an opaque picture beside {other}, which has no alpha"
+        got = f"{clear} pixels that are not opaque"
+        advice = "draw it before a background, or compare it with one that has an alpha"
+        raise ValueError(complaint(path, expected, got, advice))
+    notes.append(f"{path}: its alpha is opaque, and left out")
+    return codes[..., :COLOURS]
 
 
 def _size(codes: np.ndarray) -> str:

@@ -5,14 +5,17 @@ from __future__ import annotations
 import contextlib
 import importlib
 import os
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from types import ModuleType
+from typing import NoReturn
 
 import numpy as np
 
 import refcloud
 from refcloud.cli.outputs import printable
+from refcloud.cli.wording import as_typed
 from refcloud.refusal import complaint
 
 # Each command is a file of this room, imported when it is asked for.
@@ -30,15 +33,16 @@ COMMANDS = {
     "studio": "refcloud.cli.studio",
 }
 BAD_INPUT = 2
-# As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE).
-INTERRUPTED, PIPE_CLOSED = 130, 141
+# As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE, SIGTERM).
+INTERRUPTED, PIPE_CLOSED, TERMINATED = 130, 141, 143
 DEFECT = 70  # EX_SOFTWARE of sysexits.h: not the caller's fault
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and give its exit status.
 
-    0 is success, 1 that compared pictures differ, 2 bad input, 130 an interrupt. A
+    0 is success, 1 that compared pictures differ, 2 bad input, 130 an
+    interrupt, 143 a request to terminate. A
     failure is one line on stderr.
     """
     words = list(sys.argv[1:] if argv is None else argv)
@@ -47,7 +51,10 @@ def main(argv: Sequence[str] | None = None) -> int:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))
     try:
         # What overflows is refused in one line, not warned about.
-        with np.errstate(divide="raise", over="raise", invalid="raise"):
+        with (
+            _terminated(),
+            np.errstate(divide="raise", over="raise", invalid="raise"),
+        ):
             status = _run(words)
         sys.stdout.flush()
         return status
@@ -56,8 +63,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         _abandon_stdout()
         return PIPE_CLOSED
-    except KeyboardInterrupt:
-        return _fail(INTERRUPTED, "interrupted" + _going_on(words))
+    except KeyboardInterrupt as end:
+        ended = isinstance(end, _Terminated)
+        line = "terminated" if ended else "interrupted"
+        line = "; ".join([line, *map(str, end.args)])
+        return _fail(TERMINATED if ended else INTERRUPTED, line)
     except MemoryError:
         got = "more than this machine has free"
         advice = "choose a smaller picture, larger voxels or fewer balls"
@@ -93,7 +103,14 @@ def _run(words: list[str]) -> int:
         got = repr(name[:60]) if words else "none"
         advice = "see refcloud --help"
         raise ValueError(complaint("command", expected, got, advice))
-    return _module(name).run(rest)
+    module = _module(name)
+    try:
+        return module.run(rest)
+    except (ValueError, TypeError) as refusal:
+        command = getattr(module, "command", None)
+        if command is None:
+            raise
+        raise ValueError(as_typed(str(refusal), command().flags)) from None
 
 
 def _module(name: str) -> ModuleType:
@@ -108,11 +125,26 @@ def _overview() -> str:
     return "\n".join([*lines, "", "refcloud COMMAND --help gives a command's options."])
 
 
-def _going_on(words: list[str]) -> str:
-    """Say what the same command does with what an interrupted one has left."""
-    if words[:1] != ["animate"]:
-        return ""
-    return "; the same command again goes on from the frames that are there"
+class _Terminated(KeyboardInterrupt):
+    """A request to terminate, which ends a command as Ctrl-C does."""
+
+
+@contextlib.contextmanager
+def _terminated() -> Iterator[None]:
+    """Let a request to terminate clear up behind what it ends."""
+
+    def end(number: int, stack: object) -> NoReturn:
+        raise _Terminated
+
+    try:
+        before = signal.signal(signal.SIGTERM, end)
+    except ValueError:  # not in the main thread
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _fail(status: int, line: str) -> int:

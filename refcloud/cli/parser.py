@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
-from refcloud.cli.options import Option
+from refcloud.cli.options import FileOption, Option
 from refcloud.cli.values import number, value_of
 from refcloud.refusal import complaint
 
@@ -72,6 +72,12 @@ class Command:
             self._flags |= {"-o", OUTPUT}
             self._parser.add_argument("-o", OUTPUT, metavar="FILE", help=output)
 
+    @property
+    def flags(self) -> dict[str, str]:
+        """Give the options by the names of the library's parameters."""
+        given = {option.name: option.flag for option in self._options.values()}
+        return {"path": OUTPUT, **given} if OUTPUT in self._flags else given
+
     def argument(self, name: str, text: str, *, optional: bool = False) -> None:
         """Add an argument; one that may be left out stands after all others."""
         self._arguments.append(name)
@@ -133,6 +139,9 @@ class Command:
         if typed.get("output") is not None:
             values[OUTPUT] = typed["output"]
         self._check_arguments(arguments)
+        for flag, value in values.items():
+            if flag == OUTPUT or isinstance(self._options[flag], FileOption):
+                _refuse_empty(flag, value)
         return Given(tuple(arguments), values)
 
     def _check_arguments(self, arguments: list[str]) -> None:
@@ -141,6 +150,8 @@ class Command:
             missing = names[len(arguments)]
             advice = f"see {self.name} --help"
             raise ValueError(complaint(missing, "a name", "none", advice))
+        for name, word in zip(names, arguments, strict=False):
+            _refuse_empty(name, word)
         if len(arguments) > len(names):
             wanted = f"{len(names)}: " + " ".join(names) if names else "none"
             extra = f"also {arguments[len(names)][:60]!r}"
@@ -194,6 +205,12 @@ class Command:
         advice = f"did you mean {near[0]}?" if near else f"see {self.name} --help"
         expected = f"an option of {self.name}"
         raise ValueError(complaint(flag[:60], expected, "an unknown one", advice))
+
+
+def _refuse_empty(name: str, word: str) -> None:
+    """Refuse an empty text, which as a path would mean the current folder."""
+    if not word:
+        raise ValueError(complaint(name, "a name", "an empty text"))
 
 
 def _is_flag(word: str) -> bool:

@@ -31,8 +31,7 @@ class Stages:
 
     def count(self, done: int, of: int, left: float) -> None:
         """Take note of how many parts are done, and of the seconds that are left."""
-        minutes, seconds = divmod(round(left), 60)
-        self._latest = f"{done} of {of}, {minutes}:{seconds:02} left"
+        self._latest = f"{done} of {of}, {duration(left)} left"
 
     def part(self, done: int, of: int) -> None:
         """Take note of how many parts are done."""
@@ -73,6 +72,23 @@ class Stages:
         parts = {**self.seconds, **(within or {})}
         each = ", ".join(f"{name} {t:.2f}" for name, t in parts.items())
         return f"seconds: {each}, total {time.perf_counter() - self._start:.2f}"
+
+
+def duration(seconds: float) -> str:
+    """Write a time in its two largest units.
+
+    Examples
+    --------
+    >>> duration(9.6), duration(83.4), duration(25376 * 60)
+    ('10 s', '1 min 23 s', '17 d 14 h')
+    """
+    left = round(seconds)
+    parts = []
+    for unit, size in (("d", 86400), ("h", 3600), ("min", 60), ("s", 1)):
+        count, left = divmod(left, size)
+        parts.append((count, unit))
+    first = next((k for k, (count, _) in enumerate(parts) if count), len(parts) - 1)
+    return " ".join(f"{count} {unit}" for count, unit in parts[first : first + 2])
 
 
 def _write(text: str) -> None:

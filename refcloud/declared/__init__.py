@@ -1,6 +1,6 @@
 """Declared scenes: read from TOML, written to it, and drawn."""
 
-from refcloud.declared.declaration import Cloud, Declaration, Placement
+from refcloud.declared.declaration import Cloud, Declaration, Placement, Scale
 from refcloud.declared.drawn import scene_from
 from refcloud.declared.kinds import (
     KINDS,
@@ -20,6 +20,7 @@ __all__ = [
     "Declaration",
     "Kind",
     "Placement",
+    "Scale",
     "declared_kind",
     "enter_kind",
     "load_scene",

@@ -10,10 +10,13 @@ import numpy as np
 
 from refcloud.checking import check_fields
 from refcloud.conventions import Positive, Range, Vector
+from refcloud.extremes import refuse_far, refuse_small
 from refcloud.lighting import Look
 from refcloud.optics import Medium, Sun
 from refcloud.sky import Sky
 
+# As far as coordinates go: a picture shows no more of a cloud that is scaled further.
+Scale = Annotated[float, Range(1e-6, 1e6)]
 FORMAT, VERSION = "refcloud.scene", 1
 
 
@@ -39,13 +42,16 @@ class Placement:
 
     at: Vector = field(default_factory=lambda: np.zeros(3))
     turn: Annotated[float, Range(-7.0, 7.0, "radians")] = 0.0
-    scale: Annotated[float, Positive] = 1.0
+    scale: Scale = 1.0
     air: Annotated[float, Positive] | None = None
     prune: bool = False
     even: bool = False
 
     def __post_init__(self) -> None:
         check_fields(self)
+        refuse_far("at", self.at)
+        if self.air is not None:
+            refuse_small("air", self.air)
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from refcloud.declared.kinds import Changed, find_kind
 from refcloud.image import Picture
 from refcloud.lighting import Haze, named
 from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
+from refcloud.refusal import within
 from refcloud.scene import Model, Motion, Scene, View
 
 LAST = "cloud"
@@ -58,9 +59,11 @@ def model(declared: Declaration) -> Model:
     notes: list[str] = []
     for number, cloud in enumerate(declared.clouds):
         start = time.perf_counter()
-        grid = generate(**cloud.shape)
+        with within(f"cloud[{number}].shape."):
+            grid = generate(**cloud.shape)
         middle = time.perf_counter()
-        balls = _balls(cloud, grid)
+        with within(f"cloud[{number}]."):
+            balls = _balls(cloud, grid)
         seconds["generate"] += middle - start
         seconds["approximate"] += time.perf_counter() - middle
         name = name_of(declared, number)
@@ -82,7 +85,8 @@ def _balls(cloud: Cloud, grid: VoxelGrid) -> Metaballs:
     if cloud.balls is None:
         balls = voxel_balls(grid)
     else:
-        balls = approximate(grid, **cloud.balls)
+        with within("balls."):
+            balls = approximate(grid, **cloud.balls)
     if place.even:
         balls = dataclasses.replace(balls, densities=np.ones(len(balls)))
     if place.prune:

@@ -32,7 +32,8 @@ from refcloud.declared.kinds import Changed, find_kind
 from refcloud.lighting import Look, named
 from refcloud.metaballs import approximate
 from refcloud.optics import Medium, Sun
-from refcloud.refusal import complaint, describe
+from refcloud.paths import refuse_path
+from refcloud.refusal import complaint, describe, within
 from refcloud.sky import Sky
 
 MOST_BYTES = 1_000_000  # of a file; those of the scenes here have about 2000
@@ -63,6 +64,7 @@ def load_scene(path: str | Path) -> Declaration | Changed:
         It is no TOML, of another kind or version, or something in it does not fit; the
         line names the file, the table and the key.
     """
+    refuse_path("path", path)
     path = Path(path)
     if not path.exists():
         raise FileNotFoundError(f"{path}: expected a scene (.toml), got no such file")
@@ -73,10 +75,8 @@ def load_scene(path: str | Path) -> Declaration | Changed:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         what = " ".join(str(error).split())[:80]
         raise ValueError(complaint(f"{path}", "a TOML file", f"{what}")) from None
-    try:
+    with within(f"{path}: "):
         return _declared(table)
-    except (ValueError, TypeError) as error:
-        raise type(error)(f"{path}: {error}") from None
 
 
 def _declared(table: dict[str, Any]) -> Declaration | Changed:
@@ -99,19 +99,19 @@ def _declared(table: dict[str, Any]) -> Declaration | Changed:
     camera = table.get("camera")
     if camera is not None:
         camera = checked_table("camera", camera, Camera)
-        Camera(**camera)
+        _made("camera", Camera, camera)
     return Declaration(
         check("name", table.get("name", "scene"), str),
         check("title", table.get("title", ""), str),
         tuple(_cloud(f"cloud[{k}]", each) for k, each in enumerate(clouds)),
         camera,
         tuple(
-            Sun(**checked_table(f"sun[{k}]", each, Sun))
+            _made(f"sun[{k}]", Sun, each)
             for k, each in enumerate(_tables("sun", table.get("sun", [])))
         ),
-        None if medium is None else Medium(**checked_table("medium", medium, Medium)),
+        None if medium is None else _made("medium", Medium, medium),
         _look("look", table.get("look", {})),
-        Sky(**checked_table("sky", sky, Sky)),
+        _made("sky", Sky, sky),
         check("scattering", table.get("scattering", "single"), Scattering),
     )
 
@@ -159,19 +159,34 @@ def nested(name: str, table: Any, own: Any) -> Any:
         elif isinstance(old, tuple) and old and dataclasses.is_dataclass(old[0]):
             # Rows are whole: what they leave out, the type itself has by default.
             given[key] = tuple(
-                type(old[0])(**checked_table(f"{where}[{k}]", row, type(old[0])))
+                _made(f"{where}[{k}]", type(old[0]), row)
                 for k, row in enumerate(_tables(where, value))
             )
         else:
             given[key] = check(where, value, hints[key])
-    return dataclasses.replace(own, **given)
+    with within(f"{name}."):
+        made = dataclasses.replace(own, **given)
+        if "eye" in hints and "target" in hints:
+            Camera(made.eye, made.target)
+        return made
+
+
+def _made(
+    name: str, thing: Callable[..., Any], table: Any, *, also: tuple[str, ...] = ()
+) -> Any:
+    """Make a dataclass of a table; what it refuses itself is named as in the file."""
+    given = checked_table(name, table, thing, also=also)
+    with within(f"{name}."):
+        return thing(**given)
 
 
 def _look(name: str, table: Any) -> Look:
     """Read a look: one by name, and what is changed of it."""
     rest = dict(_table(name, table))
     base = named(check(f"{name}.like", rest.pop("like", "cumulus"), LookName))
-    return dataclasses.replace(base, **checked_table(name, rest, Look))
+    given = checked_table(name, rest, Look)
+    with within(f"{name}."):
+        return dataclasses.replace(base, **given)
 
 
 def _cloud(name: str, table: Any) -> Cloud:
@@ -181,7 +196,7 @@ def _cloud(name: str, table: Any) -> Cloud:
     return Cloud(
         checked_table(f"{name}.shape", table.get("shape", {}), generate),
         None if balls is None else checked_table(f"{name}.balls", balls, approximate),
-        Placement(**checked_table(name, place, Placement, also=parts)),
+        _made(name, Placement, place, also=parts),
         checked_table(f"{name}.look", table.get("look", {}), Look),
     )
 

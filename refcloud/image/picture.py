@@ -149,7 +149,7 @@ def load_picture(path: str | Path) -> Picture:
     FileNotFoundError
         No such file.
     ValueError
-        Damaged, of another kind, or above 64 million pixels.
+        Damaged, of another kind, or above 8.3 million pixels.
 
     Source: the PNG specification; NumPy's .npy format.
     """

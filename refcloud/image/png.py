@@ -89,7 +89,7 @@ def read_png(path: str | Path) -> Codes:
     FileNotFoundError
         No such file.
     ValueError
-        Not a PNG, a damaged one, one of 16 bits, or one above 64 million pixels.
+        Not a PNG, a damaged one, one of 16 bits, or one above 8.3 million pixels.
 
     Source: the PNG specification.
     """
@@ -131,7 +131,8 @@ def _check_png(path: str | Path, data: bytes) -> bool:
     width, height, depth, kind = struct.unpack(">IIBB", found[0][1][:10])
     check_size(path, width, height)
     if depth > 8:
-        raise ValueError(f"{path}: expected at most 8 bits a channel, got {depth}")
+        expected, advice = "at most 8 bits a channel", "save it again with 8 bits"
+        raise ValueError(complaint(f"{path}", expected, f"{depth}", advice))
     return kind in (GREY_ALPHA, RGB_ALPHA) or any(n == b"tRNS" for n, _ in found)
 
 
@@ -186,7 +187,7 @@ def check_size(path: str | Path, width: int, height: int) -> None:
     Raises
     ------
     ValueError
-        No pixels, or more than 64 million.
+        No pixels, or more than 8.3 million.
     """
     if not 1 <= width * height <= MOST_PIXELS:
         raise ValueError(

@@ -114,7 +114,7 @@ def framebuffer(
     Parameters
     ----------
     width, height
-        Size in pixels, together at most 64 million pixels.
+        Size in pixels, together at most 8.3 million pixels.
     color
         RGBA of every pixel, shape (4,).
     depth
@@ -131,7 +131,7 @@ def framebuffer(
     Raises
     ------
     ValueError
-        More than 64 million pixels.
+        More than 8.3 million pixels.
 
     Source: paper M, section 4.1, first step (white clear); F01.
 

@@ -23,7 +23,7 @@ Places = NDArray[np.int64]  # in sub-pixels, y downward
 
 SUBPIXEL = 256  # 8 bits, what graphics hardware has
 # How far beside the window geometry is cut: no cut shows, and the products of two
-# coordinates stay below 2^63 in every picture of up to 64 megapixels.
+# coordinates stay below 2^63 in every picture of up to 8.3 megapixels.
 GUARD = 8192.0
 NEAR = 1e-3
 Near = Annotated[float, Range(1e-100, 1e100, "scene units")]

@@ -22,12 +22,14 @@ from refcloud.choices import SUN
 from refcloud.cloudmap import generate
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Positive, Range, Seed, Skipped, Vector
-from refcloud.declared import Kind, enter_kind
+from refcloud.declared import Kind, Scale, enter_kind
+from refcloud.extremes import refuse_small
 from refcloud.image import Picture
 from refcloud.lighting import Haze, Look, named
 from refcloud.lighting.look import GROUND_LIGHT, SKY_LIGHT
 from refcloud.metaballs import Metaballs, approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium, Sun
+from refcloud.refusal import within
 from refcloud.scene import Model, Motion, View
 from refcloud.sky import Sky
 from refcloud.transport.plans import PLANS
@@ -60,12 +62,13 @@ class Placed:
     seed: Seed
     x: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
     z: Annotated[float, Range(-1e6, 1e6, "scene units")] = 0.0
-    scale: Annotated[float, Positive] = 1.0
+    scale: Scale = 1.0
     turn: Annotated[float, Range(-7.0, 7.0, "radians")] = 0.0
     air: Annotated[float, Positive] = 900.0
 
     def __post_init__(self) -> None:
         check_fields(self)
+        refuse_small("air", self.air)
 
 
 @dataclass(frozen=True)
@@ -140,7 +143,8 @@ def model(of: Cumulus = OWN) -> Model:
     recipes = [(of.hero.seed, None, of.count), *small]
     for name, (seed, voxel, count) in zip(names, recipes, strict=True):
         start = time.perf_counter()
-        grid = generate(seed=seed, voxel=voxel)
+        with within("parameters.", voxel="field_voxel"):
+            grid = generate(seed=seed, voxel=voxel)
         middle = time.perf_counter()
         method = "standard" if name == "cloud" else "quick"
         balls = prune(approximate(grid, count=count, method=method, seed=seed))

@@ -19,6 +19,7 @@ from refcloud.checking import check_fields
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Array, Positive, Range
 from refcloud.declared import Kind, enter_kind
+from refcloud.extremes import refuse_small
 from refcloud.image import Picture
 from refcloud.lighting import Haze, named
 from refcloud.metaballs import Metaballs
@@ -61,6 +62,7 @@ class Particles:
 
     def __post_init__(self) -> None:
         check_fields(self)
+        refuse_small("air", self.air)
 
 
 OWN = Particles(

@@ -113,7 +113,7 @@ def sky_gradient(top: Colour, bottom: Colour, *, width: Side, height: Side) -> A
     Raises
     ------
     ValueError
-        The picture is over 64 megapixels.
+        The picture is over 8.3 megapixels.
 
     Source: document D (F13), mended; E34.
 
@@ -146,7 +146,7 @@ def printed_gradient(*, width: Side, height: Side) -> Array:
     Raises
     ------
     ValueError
-        The picture is over 64 megapixels.
+        The picture is over 8.3 megapixels.
 
     Source: document D (F13); E34.
 

@@ -165,7 +165,7 @@ def test_frames_of_another_job_are_refused_or_redrawn(change, tmp_path: Path) ->
 def test_foreign_frames_without_a_job_are_refused(tmp_path: Path) -> None:
     animate(LOOPED, tmp_path / "a", **small())
     (tmp_path / "a" / "job.json").unlink()
-    with pytest.raises(ValueError, match="path: expected an empty folder"):
+    with pytest.raises(ValueError, match=r"path: expected .* to be empty, or"):
         animate(LOOPED, tmp_path / "a", **small())
 
 

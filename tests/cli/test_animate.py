@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -12,7 +15,7 @@ import pytest
 import refcloud as rc
 from refcloud.cli.progress import Stages
 
-from .test_entry import Terminal
+from .test_entry import ROOT, Terminal
 
 SIZE = "--width 16 --height 12"
 
@@ -64,7 +67,11 @@ def test_a_scene_s_frames_are_kept(run, here: Path) -> None:
     assert ended.out.splitlines()[-1] == "frames"
     other = run(*line.replace("360", "90").split())
     assert other.status == 2
-    assert "choose another name, or redraw them" in other.err
+    assert other.err == (
+        "refcloud: --output: expected frames to be empty, or to hold frames of the same"
+        " job, got frames that were drawn with other parameters; choose another name,"
+        " or give --redraw to draw them anew\n"
+    )
     again = run(*line.replace("360", "90 --redraw").split())
     assert "frames: 2; the way does not close\n" in again.out
 
@@ -85,4 +92,46 @@ def test_progress_says_how_long_is_left(is_terminal, monkeypatch) -> None:
         stages.count(3, 24, 83.4)
         while "frames" not in screen.text:
             time.sleep(0.001)
-    assert "refcloud: frames, 0 s, 3 of 24, 1:23 left" in screen.text
+    assert "refcloud: frames, 0 s, 3 of 24, 1 min 23 s left" in screen.text
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_request_to_terminate_keeps_the_frames_and_ends_every_process(
+    jobs: int, here: Path
+) -> None:
+    line = f"animate man-10 --frames 9999 --turn-eye 9 {SIZE} --jobs {jobs} -o a"
+    with subprocess.Popen(
+        [sys.executable, "-m", "refcloud", *line.split()],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        while process.poll() is None and not list(here.glob("a/frame-*.png")):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGTERM)
+        out, err = process.communicate()
+    assert (process.returncode, out) == (143, "")
+    last = err.splitlines()[-1]
+    found = re.fullmatch(
+        r"refcloud: terminated; (\d+) frames? (is|are) in a, and the same command again"
+        " goes on from there",
+        last,
+    )
+    assert found, err
+    assert len(list(here.glob("a/frame-*.png"))) == int(found[1])
+    assert "leaked" not in err
+    assert not list(here.glob("a/*.part"))
+    end = time.monotonic() + 20.0  # the tracker of semaphores goes last
+    while _any_lives(process.pid) and time.monotonic() < end:
+        time.sleep(0.01)
+    assert not _any_lives(process.pid)
+
+
+def _any_lives(session: int) -> bool:
+    try:
+        os.killpg(session, 0)
+    except ProcessLookupError:
+        return False
+    return True

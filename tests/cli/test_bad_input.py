@@ -26,7 +26,7 @@ BAD = {
     "approximate balls.npz": "got format 'refcloud.metaballs'",
     "approximate flat.npz": r"density of shape \(D, H, W\), got .*\(2, 3\)",
     "approximate a.png": r"\.(npz|png): expected a .* \.npz",
-    "render none.npz": "got no such file",
+    "render none.npz": "none.npz: expected a cloud map, metaballs or .*, got no such",
     "render folder.npz": "got a folder",
     "render text.npz": r"text.npz: expected a cloud map, .*no whole .npz",
     "render truncated.npz": r"npz: expected a cloud map, .*no whole .npz",
@@ -48,19 +48,26 @@ BAD = {
     "render cumulus --g 0.5": "--sigma-t: expected it beside --g",
     "render cumulus --irradiance 1 1 1": "--sun: expected it beside --irradiance",
     "render cumulus --background sky": "background: expected none beside a scene",
-    "render cumulus --width 1000000 --height 1000000": "at most 64 megapixels",
+    "render cumulus --width 1000000 --height 1000000": "at most 8.3 megapixels",
+    "render man-14 --width 20000 --height 3000": "megapixels .*, got 20000 x 3000",
+    "render man-10 --width 6000 --height 4500": "megapixels .*, got 6000 x 4500",
+    "render man-10 --width 4000": "megapixels .*, got 4000 x 3000; make the picture",
+    f"{RENDER} --height 4500": "megapixels .*, got 6000 x 4500",
+    "animate man-10 --frames 2 --turn-eye 9 --width 6000": "got 6000 x 4500",
+    "noise fbm --size 2048 --view octaves": "size: expected panels .*, got 8 of 2048",
+    "noise fbm --size 2048 --view channels": "size: .*, got 4 of 2048 x 2048; choose",
     # animations
     "animate man-10": "--frames: expected how many pictures, got none",
     "animate man-10 --frames 0": r"--frames: .*\[1, 100000\], got 0",
     "animate man-10 --frames 3": r"moves: .* \(--turn-sun, --turn-eye, --wind\)",
     "animate demand-sky --frames 3": r"moves: .* \(none: it cannot move\)",
-    "animate demand-sky --frames 3 --turn-eye 9": "turn_eye: expected none for demand-",
+    "animate demand-sky --frames 3 --turn-eye 9": "--turn-eye: expected none for dem",
     "animate man-10 --frames 3 --time 0 1": "time: expected none for man-10, which",
     "animate man-10 --frames 3 --time 0": "--time: expected two numbers, got '0'",
     "animate man-10 --frames 3 --turn-eye 9 -o a.mp4": "ending in .png or .apng or",
     "animate man-10 --frames 3 --turn-eye 9 -o no/a": "a name in an existing folder",
     "animate balls.npz --frames 2 --turn-eye 9 --background transparent -o a.gif": (
-        "path: expected an opaque background in .gif"
+        "--output: expected an opaque background in .gif"
     ),
     # values
     "generate --octaves 0": r"--octaves: expected a whole number in \[1, 32\], got 0",
@@ -78,7 +85,7 @@ BAD = {
     "generate --diameters 1 -2 3": r"numbers in \[1e-100, 1e\+100\] .*, got -2 to 3",
     "generate --diameters 1 inf 3": "--diameters: expected finite numbers",
     "generate --diameters 1e300 1e300 1e300": "expected",
-    "generate --voxel 1e-9": "voxel: expected a grid of at most .* larger voxel",
+    "generate --voxel 1e-9": "--voxel: .* choose a larger --voxel or a sma",
     "generate --voxel -1e-3": r"--voxel: .*, got -0.001",
     "generate --seed 9223372036854775808": "--seed: expected a whole number in",
     f"generate --seed {'9' * 400}": "expected",
@@ -96,7 +103,7 @@ BAD = {
     f"{RENDER} --g 0.9 --phase rayleigh": "--g: expected none beside --phase rayleigh",
     "noise worley": r"KIND: .*, got 'worley'; did you mean worley_f1\?",
     "noise perlin": r"KIND: .*, got 'perlin'; did you mean gradient\?",
-    "approximate voxels.npz --least-radius 5e3": "overlap or least_radius: expected",
+    "approximate voxels.npz --least-radius 5e3": "--overlap or --least-radius: ",
     f"{RENDER} --sigma-t 1 2": "--sigma-t: expected a number or three numbers",
     f"{RENDER} --albedo 1.1": r"--albedo: .*\[0, 1\], got 1.1",
     f"{RENDER} --background blue": "sky or transparent or three numbers, got 'blue'",
@@ -106,10 +113,32 @@ BAD = {
     "generate -o a.txt": "--output: expected a name ending in .npz, got 'a.txt'",
     "generate -o folder.npz": "--output: expected a file's name, got the folder",
     f"generate -o {'n' * 300}.npz": "--output: expected a file that can be written",
-    "generate -o=": "--output: expected",
+    "generate -o=": "--output: expected a name, got an empty text",
+    "animate man-10 --frames 3 --turn-eye 10 -o=": "--output: .*, got an empty text",
+    "render man-10 -o=": "--output: expected a name, got an empty text",
+    "figure --all --output=": "--output: expected a name, got an empty text",
+    "scene man-10 -o=": "--output: expected a name, got an empty text",
+    "noise fbm -o=": "--output: expected a name, got an empty text",
+    "compare a.png a.png -o=": "--output: expected a name, got an empty text",
+    "approximate voxels.npz -o=": "--output: expected a name, got an empty text",
+    "approximate voxels.npz --picture=": "--picture: .*, got an empty text",
+    "bench noise --plot=": "--plot: expected a name, got an empty text",
     "approximate voxels.npz -o a.npy": "--output: expected a name ending in .npz",
     "approximate voxels.npz --picture a.jpg": "--picture: expected a name ending in",
     "approximate voxels.npz --picture no/a.png": "--picture: .* folder, got no; create",
+    "approximate voxels.npz --count 3 --tolerance 0.1": (
+        "^refcloud: --tolerance: expected none beside --count, got"
+    ),
+    "render voxels.npz --backend gl": (
+        "^refcloud: --backend: expected none beside --method march, got one; choose"
+        " --method splat, or leave --backend out$"
+    ),
+    f"{RENDER} --ambient 1 1 1": (
+        "^refcloud: --ambient: .*; choose --method march, or leave --ambient out$"
+    ),
+    f"{RENDER} --width 5000": r"^refcloud: --width: expected at most 8\.3 megapixels",
+    "render man-10 --method splat": "^refcloud: --method: expected none beside a scene",
+    "animate man-10 --frames 2 --turn-sun 9 --sun-axis 0 0 0": "^refcloud: --sun-axis:",
     "approximate voxels.npz --count 0": r"--count: .* in \[1, 1000000\], got 0",
     "approximate voxels.npz --count 1000000000": r"--count: .* got 1000000000; choose",
     "approximate voxels.npz --tolerance -1": r"--tolerance: .* in \(0, 1\), got -1",
@@ -193,6 +222,13 @@ def test_a_closed_folder_is_found_before_the_work(run, here, monkeypatch) -> Non
         status, _, err = run(*words)
         assert status == 2, err
         assert "(Permission denied); choose another name or folder" in err
+
+
+@pytest.mark.parametrize("line", ["render", "animate", "noise", "compare a.png"])
+def test_an_empty_argument_is_refused_as_such(line, run, here) -> None:
+    status, _, err = run(*line.split(), "")
+    assert status == 2
+    assert re.fullmatch(r"refcloud: \w+: expected a name, got an empty text\n", err)
 
 
 def test_a_file_name_may_hold_anything(run, here) -> None:

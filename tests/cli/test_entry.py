@@ -15,6 +15,7 @@ import refcloud as rc
 import refcloud.cli.generate
 from refcloud.cli import progress
 from refcloud.cli.progress import Stages
+from refcloud.image import read_png, write_png
 
 from .conftest import contents
 
@@ -127,6 +128,44 @@ def test_compare_names_the_worst_pixels_and_draws_them(run, pictures) -> None:
     assert out.splitlines()[-1] == "d.npy"
     off = np.argwhere(rc.load_picture("d.npy").linear > 0.0)
     assert off.tolist() == [[0, 1, 2], [2, 5, 1]]
+
+
+@pytest.fixture
+def alphas(pictures: Path) -> Path:
+    """Give the same colours with an opaque alpha, and with one clear pixel."""
+    codes = np.dstack([read_png("grey.png"), np.full((4, 6), 255, np.uint8)])
+    write_png("opaque.png", codes)
+    codes[1, 2, 3] = 254
+    write_png("clear.png", codes)
+    return pictures
+
+
+@pytest.mark.parametrize("line", ["opaque.png grey.png", "grey.png opaque.png"])
+def test_compare_leaves_out_an_opaque_alpha_and_says_so(line, run, alphas) -> None:
+    ended = run("compare", *line.split(), "-o", "d.png")
+    assert (ended.status, ended.err) == (0, "")
+    verdict, note, found = ended.out.splitlines()[:3]
+    assert verdict == "same"
+    assert note == "opaque.png: its alpha is opaque, and left out"
+    assert found == "largest difference: 0 codes"
+    assert run("compare", "opaque.png", "far.png").status == 1
+
+
+@pytest.mark.parametrize("line", ["clear.png grey.png", "grey.png clear.png"])
+def test_compare_refuses_an_alpha_that_counts_by_its_own_file(line, run, alphas):
+    status, _, err = run("compare", *line.split())
+    assert status == 2
+    assert err.startswith(
+        "refcloud: clear.png: expected an opaque picture beside grey.png, which has no"
+        " alpha, got 1 pixels that are not opaque; draw it before a background, or"
+    )
+
+
+def test_compare_takes_alphas_of_both_into_account(run, alphas) -> None:
+    ended = run("compare", *"clear.png opaque.png --codes 0".split())
+    assert ended.status == 1
+    assert "worst pixel: row 1, column 2, 1 codes" in ended.out
+    assert "alpha" not in ended.out
 
 
 class Terminal:

@@ -48,16 +48,33 @@ def test_an_empty_cloud_is_told(run, here: Path) -> None:
     assert "the cloud is empty: no voxel is occupied\n" in ended.out
 
 
-def test_an_interrupted_animation_says_that_it_goes_on(
-    run, here: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("there", "more", "line"),
+    [
+        (0, "", "interrupted\n"),
+        (1, "", "interrupted; 1 frame is in a.png.frames, and the same command again"),
+        (
+            2,
+            "",
+            "interrupted; 2 frames are in a.png.frames, and the same command again",
+        ),
+        (2, "--redraw", "the same command again without --redraw goes on from there\n"),
+    ],
+)
+def test_an_interrupted_animation_says_what_is_there_and_how_it_goes_on(
+    there, more, line, run, here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def interrupted(*words: object, **options: object) -> None:
+        Path("a.png.frames").mkdir()
+        for k in range(there):
+            Path(f"a.png.frames/frame-000{k}.png").touch()
         raise KeyboardInterrupt
 
     monkeypatch.setattr(refcloud.cli.animate, "animate", interrupted)
-    ended = run(*"animate man-10 --frames 2 --turn-eye 9 -o a".split())
+    ended = run(*f"animate man-10 --frames 9 --turn-eye 9 -o a.png {more}".split())
     assert ended.status == 130
-    assert "interrupted; the same command again goes on from" in ended.err
+    assert line in ended.err
+    assert ended.err.count("\n") == 1
 
 
 def test_a_file_s_name_in_place_of_a_scene_s_is_told_what_to_do() -> None:

@@ -175,17 +175,25 @@ BAD = {
     HEAD + "[cloud]": r"cloud: expected tables \[\[cloud\]\], got a dict",
     HEAD + "[[clouds]]": "clouds: expected one of .*; did you mean cloud?",
     HEAD + "[[cloud]]\nshap = 1": r"cloud\[0\].shap: .*did you mean shape?",
-    HEAD + "[[cloud]]\nscale = 0": r"cloud\[0\].scale: expected a finite number in \(0",
+    HEAD + "[[cloud]]\nscale = 0": r"cloud\[0\].scale: .*\[1e-06, 1e\+06\], got 0",
+    HEAD + "[[cloud]]\nscale = 1e9": r"cloud\[0\].scale: .*, got 1e\+09; choose within",
+    HEAD + "[[cloud]]\nair = 1e-300": r"cloud\[0\].air: expected sizes of at least",
     HEAD + "[[cloud]]\n[cloud.shape]\noctaves = 0": r"\[0\].shape.octaves: .*got 0",
     HEAD + "[[cloud]]\n[cloud.balls]\ncount = 2.5": r"balls.count: expected a whole",
     HEAD + "[[cloud]]\n[cloud.balls]\ngrid = 1": r"balls.grid: expected one of count",
     HEAD + "[[cloud]]\n[cloud.look]\nerosion = 1": r"look.erosion: .*\[0, 1\)",
     HEAD + "[[cloud]]\n[[sun]]\ndirection = [0, 1]": r"sun\[0\].direction: .*\(3,\)",
-    HEAD + "[[cloud]]\n[[sun]]\ndirection = [0, 0, 0]": "direction: .* is not zero",
+    HEAD + "[[cloud]]\n[[sun]]\ndirection = [0, 0, 0]": r"sun\[0\].direction: .* zero",
+    HEAD
+    + "[[cloud]]\n[[sun]]\ndirection = [1, 0, 0]\n[[sun]]\ndirection = [0, 0, 0]": (
+        r"toml: sun\[1\].direction: expected a vector that is not zero"
+    ),
     HEAD + "[[cloud]]\n[medium]\nalbedo = 2": r"medium.albedo: expected .*\[0, 1\]",
     HEAD + "[[cloud]]\n[look]\nlike = 'mann'": "look.like: expected one of 'cumulus'",
     HEAD + "[[cloud]]\n[sky]\nbend = nan": "sky.bend: expected a finite number",
-    HEAD + "[[cloud]]\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]": "another place",
+    HEAD + "[[cloud]]\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]": (
+        "camera.target: expected another place than the eye"
+    ),
     HEAD + "sky = 3\n[[cloud]]": r"sky: expected a table \[sky\], got 3",
     HEAD + "name = 3\n[[cloud]]": "name: expected a text, got 3",
     HEAD + "scattering = 'twice'\n[[cloud]]": "scattering: expected one of 'single'",
@@ -195,7 +203,13 @@ BAD = {
     KIND + '"demand-lit"\n[parameters]\nfov_y = 9': r"parameters.fov_y: .*radians",
     KIND + '"demand-lit"\nparameters = 3': r"expected a table \[parameters\], got 3",
     KIND + '"demand-lit"\n[parameters.cloud]\nedge = [2,0,0]': "parameters.cloud.edge:",
-    KIND + '"demand-lit"\n[parameters.sun]\ndirection = [0,0,0]': "is not zero",
+    KIND + '"demand-lit"\n[parameters.sun]\ndirection = [0,0,0]': (
+        "parameters.sun.direction: expected a vector that is not zero"
+    ),
+    KIND
+    + '"cumulus"\n[parameters]\neye = [1,19,0]': "parameters.target: .*than the eye",
+    KIND + '"demand"\n[parameters.hero]\nair = 1e-300': "parameters.hero.air: expected",
+    KIND + '"demand"\n[parameters.hero]\nscale = 1e9': "hero.scale: .*, got 1e.09; ch",
     KIND + '"demand"\n[[parameters.field]]\nscale = 0': r"field\[0\].scale: expected",
     KIND + '"demand"\n[parameters]\nfield = 3': r"expected tables \[\[parameters.field",
 }

@@ -134,7 +134,7 @@ def made(width: int, height: int, depth: int = 8, kind: int = 2) -> bytes:
         ),
         (made(2**31 - 1, 1), "expected 1 to"),
         (made(0, 5), "got 0 x 5"),
-        (made(3, 3, depth=16), "at most 8 bits a channel, got 16"),
+        (made(3, 3, depth=16), "at most 8 bits a channel, got 16; save it again with"),
         (made(3, 3, kind=5), "a damaged one"),
         (made(50, 50), "a damaged one"),
         (SIGNATURE + chunk(b"IEND", b""), "no header"),

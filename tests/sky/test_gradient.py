@@ -132,7 +132,8 @@ def test_e34_the_printed_sky_is_nearly_black() -> None:
 def test_a_picture_too_large_is_refused_before_memory_is_taken(paint) -> None:
     tracemalloc.start()
     with pytest.raises(
-        ValueError, match=r"^width: expected at most 64 megapixels, got"
+        ValueError,
+        match=r"^width: expected at most 8.3 megapixels with the height, got",
     ):
         paint(width=10**6, height=10**6)
     assert tracemalloc.get_traced_memory()[1] < 1e7

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import signal
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -131,3 +134,33 @@ def test_a_folder_that_is_not_there_is_refused(
     assert end.value.code == 2
     assert "--output: expected a folder" in capsys.readouterr().err
     shutil.rmtree(tmp_path)
+
+
+SLOW = """
+import time
+from lesson import Lesson
+lesson = Lesson()
+def picture():
+    print("at work", flush=True)
+    time.sleep(60.0)
+lesson.show(picture, "a", "")
+"""
+
+
+def test_ctrl_c_ends_a_tutorial_in_one_line(tmp_path: Path) -> None:
+    for module in ("lesson", "plots", "sheets"):
+        shutil.copy(page.HERE / f"{module}.py", tmp_path)
+    (tmp_path / "99_slow.py").write_text(SLOW)
+    with subprocess.Popen(
+        [sys.executable, "99_slow.py"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(page.HERE.parent)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "at work\n"
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate()
+    assert (process.returncode, err) == (130, "99_slow.py: interrupted\n")
