@@ -178,8 +178,9 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         for name in ("man-98", "demand-99")
     }
     every = {**made_up, "man-05": find_figure("man-05")}
-    monkeypatch.setattr(figure, "figures", lambda: every)
+    # The command's module first: imported later, it would keep the made-up ones.
     monkeypatch.setattr("refcloud.cli.figure.figures", lambda: every)
+    monkeypatch.setattr(figure, "figures", lambda: every)
     return list(every)
 
 
