@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import get_args
 
+import numpy as np
 import pytest
 
 import refcloud
@@ -12,7 +14,10 @@ import refcloud.lighting
 import refcloud.metaballs
 import refcloud.noise
 import refcloud.raster
+from refcloud import transport
 from refcloud.bench.certificates import COUNTS
+from refcloud.conventions import Known, Skipped
+from refcloud.transport import scattering
 
 README = (Path(__file__).parent.parent / "README.md").read_text("utf-8")
 ROOMS = (
@@ -52,6 +57,23 @@ def test_the_table_of_certificates_adds_up() -> None:
     told = re.search(r"Of (\d+) pictures, (\d+) of them .*?, (\d+) was off", README)
     assert told is not None
     assert [int(number) for number in told.groups()] == sums
+
+
+def test_the_rows_of_the_report_are_as_a_picture_writes_them() -> None:
+    part = README.split("## What the report says")[1].split("\n## ")[0]
+    form = r"(\w+): (\d+) of (\d+) (.+) skipped, error at most ([\d.]+)"
+    rows = re.findall(rf"^{form}(?: \((.+), (proved)\))?$", part, re.M)
+    assert len(rows) == 3
+    for stage, skipped, of, what, bound, unit, how in rows:
+        row = Skipped(stage, what, int(skipped), int(of), float(bound), unit, how)
+        assert str(row) in part.splitlines()
+    for how in get_args(Known):
+        assert how in part, how
+    grid = refcloud.VoxelGrid(np.ones((2, 2, 2)), [0, 0, 0], [1, 1, 1])
+    medium = refcloud.Medium(2 * 9.05)
+    light = transport.scattered_light(grid, refcloud.Sun([0, 1, 0]), medium=medium)
+    note = scattering.report_of([light]).split("; ")[1].split(":")[0]
+    assert f"{note}`" in part
 
 
 def test_the_examples_run(

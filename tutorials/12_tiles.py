@@ -78,7 +78,8 @@ lesson.show(picture, "12-lists", "Balls on the list of each tile of 16 x 16 pixe
 # $$ F_k = T_0 T_1 \cdots T_{k-1}, \qquad
 # c = \sum_k s_k \, (F_k - F_{k+1}) + F_\mathrm{end} \, \mathrm{background} $$
 #
-# Where F has come to 0, nothing can follow. The plain form goes from the back:
+# Where F has come to 0, nothing can follow. The plain form goes from the back, ball by
+# ball `c = s (1 - T) + T c`: the same sum, where the T of later, nearer balls make F.
 
 # %%
 from refcloud.plain import eyeward as plain
@@ -120,8 +121,7 @@ lesson.row(
 # ## The knob: the tolerance
 
 # %%
-cloud = partial(picture, shown="picture")
-allowed = (0.0, 0.004, 0.02, 0.05, 0.2)
+cloud, allowed = partial(picture, shown="picture"), (0.0, 0.004, 0.02, 0.05, 0.2)
 lesson.strip(cloud, "tolerance", allowed, "12-strip", "From 0 to a fifth of white")
 
 # %% [markdown]

@@ -70,8 +70,8 @@ lesson.source(plain.cloud_cover, sky.cloud_cover)
 # It sets how much of the sky is open; the slope of the light makes the mood.
 
 # %%
-covers, slopes = (-0.25, -0.1, 0.0, 0.1, 0.2), (2.0, 0.0, -1.1, -2.5)
-lesson.strip(picture, "threshold", covers, "14-strip", "From overcast to a few clouds")
+covers, slopes = (-0.5, -0.25, -0.1, 0.0, 0.2), (2.0, 0.0, -1.1, -2.5)
+lesson.strip(picture, "threshold", covers, "14-strip", "Nearly overcast to few clouds")
 lesson.strip(picture, "light_slope", slopes, "14-light", "Slopes of the light")
 
 # %% [markdown]

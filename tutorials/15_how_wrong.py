@@ -36,21 +36,21 @@ def picture(
     tolerance: Annotated[float, Range(0.0, 0.5, "displayed white")] = 0.05,
     gain: Annotated[float, Range(1.0, 1000.0)] = 20.0,
 ) -> Sheet:
-    """Show where a march within a tolerance differs from the exact one, enlarged.
+    """Show the square root of a march's distance from the exact one, enlarged.
 
     Parameters
     ----------
     tolerance
         Largest error of a channel.
     gain
-        Factor on the difference.
+        Factor on the difference, before the root; at 20 white is 0.05 and more.
     """
     off = np.abs(marched(tolerance).linear - EXACT.linear)
     return grey(np.sqrt(np.minimum(gain * off.max(axis=-1), 1.0)))
 
 
 EXACT = marched(0.0)
-lesson.show(picture, "15-error", "The error of a march at tolerance 0.05, times 20")
+lesson.show(picture, "15-error", "A march at tolerance 0.05: square root of 20 x error")
 
 # %% [markdown]
 # ## One formula

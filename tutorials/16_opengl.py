@@ -105,7 +105,8 @@ size = lesson.size(208, 156)
 by_numpy = drawn_by("numpy", size)
 by_opengl = on_opengl(size)
 found = rc.compare_codes(by_numpy, by_opengl, codes=1, fraction=1.0)
-print(f"largest difference {found.worst} codes, {found.off_share:.2%} of pixels off")
+off = round(found.off_share * size[0] * size[1])
+print(f"{off} of {size[0] * size[1]} pixels off, by {found.worst} at most")
 lesson.row(
     {
         "numpy, float64": Sheet(by_numpy),

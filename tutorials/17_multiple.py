@@ -3,8 +3,8 @@
 #
 # *Why are real clouds so white, and ours so grey?*
 #
-# Because scattered light meets the next droplet, and the next. Where only the first
-# meeting counts, a thick cloud shows a sixth of its light. The rest can be solved.
+# Because scattered light meets the next droplet, and the next. The first meeting alone
+# gives the slab below less than a thirtieth of its light. The rest can be solved.
 
 # %%
 from typing import Annotated, Literal
@@ -90,25 +90,25 @@ lesson.source(plain_sweep.sweep, transport.sweep)
 # One per cent lost at each meeting is a lot, where light meets a hundred droplets.
 
 # %%
-lesson.strip(
-    picture, "albedo", (0.5, 0.8, 0.95, 0.99, 1.0), "17-strip", "Albedo 0.5 to 1"
-)
+albedos = (0.5, 0.8, 0.95, 0.99, 1.0)[:: 2 if lesson.quick else 1]
+lesson.strip(picture, "albedo", albedos, "17-strip", "Albedo 0.5 to 1")
 
 # %% [markdown]
 # ## How many meetings?
 #
 # The paths can count. Here is what paths of at most n scatterings show, in the middle
-# of a slab of optical depth 12, against n: single scattering is the first point.
+# of a slab of optical depth 12. At 64 it still rises; 256 are nearly all.
 
 # %%
 slab = rc.VoxelGrid(np.ones((4, 4, 4)), [-40, -40, 0], [40, 40, 1])
 ray = [[0.0, 0.0, 9.0]], [[0.0, 0.0, -1.0]]
 scene = {"suns": rc.Sun([0.0, 0.5, 1.0]), "medium": rc.Medium(12.0, 1.0, 0.6, "hg")}
-orders, paths = [1, 2, 4, 8, 16, 32, 64], 512 if lesson.quick else 16384
+orders, paths = [2**k for k in range(9)], 256 if lesson.quick else 16384
 shown = []
 for n in orders:
     traced = transport.trace_paths(slab, *ray, paths=paths, orders=n, **scene)
     shown.append(traced.radiance[0, 0])
+    print(f"{n:3} meetings: {shown[-1]:.3f}, standard error {traced.error[0, 0]:.3f}")
 once, _ = march.integrate(slab, *ray, **scene)
 lesson.plot(
     orders,

@@ -194,7 +194,7 @@ class Lesson:
         """Tell where the library's code stands that a page shows here."""
         for function in functions:
             path, line, text = source_of(function)
-            print(f"{path}:{line}: {len(text.splitlines())} lines")
+            self._aside(f"{path}:{line}: {len(text.splitlines())} lines")
 
     def told(self, rows: Sequence[Skipped]) -> None:
         """Print what a picture's making left out."""
@@ -229,8 +229,12 @@ class Lesson:
     def _store(self, sheet: Sheet, name: str) -> Sheet:
         if self.folder is not None:
             path = sheet.save(self.folder / f"{name}.png")
-            print(f"{time.perf_counter() - self._started:6.1f} s  {path}")
+            self._aside(f"{time.perf_counter() - self._started:6.1f} s  {path}")
         return sheet
+
+    def _aside(self, line: str) -> None:
+        """Tell who runs the file how far it is: apart from what a cell prints."""
+        print(line, file=sys.stderr if self.script else sys.stdout)
 
 
 def source_of(function: Callable[..., Any]) -> tuple[str, int, str]:

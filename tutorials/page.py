@@ -2,24 +2,35 @@
 
 python tutorials/page.py                 all pages, and the list of them
 python tutorials/page.py --pictures 02   first draw the pictures of tutorial 02 anew
+
+What the cells print is kept beside the pictures when they are drawn: pages show it.
 """
 
 from __future__ import annotations
 
 import ast
+import contextlib
+import hashlib
+import inspect
+import io
+import json
 import os
 import re
-import runpy
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from lesson import HERE, PICTURES, source_of
 
+from refcloud.bench.timing import machine
+from refcloud.cli.docstrings import summary
+
 QUICK = PICTURES / "quick"  # the same, small, as the tests draw them
 CELL = re.compile(r"^# %%(.*)$", re.MULTILINE)
 DRAWS = ("show", "strip", "row", "plot")
 SOLUTIONS = "## Solutions"
+MACHINE = "machine"  # the key of the class of machine, among those of the cells
 
 
 def tutorials() -> list[Path]:
@@ -63,6 +74,17 @@ def pictures_of(path: Path) -> dict[str, str]:
     return found
 
 
+def key_of(body: str) -> str:
+    """Name a cell by its code: what another code printed is not shown under it."""
+    return hashlib.sha256(body.encode()).hexdigest()[:12]
+
+
+def stored(path: Path) -> dict[str, Any]:
+    """Read what a tutorial's cells printed: lines by `key_of`, and the machine."""
+    file = PICTURES / f"{path.name[:2]}.json"
+    return json.loads(file.read_text("utf-8")) if file.exists() else {}
+
+
 def _text(node: ast.expr) -> str | None:
     """Give a text, written in one piece or in several."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -87,22 +109,22 @@ def page_of(path: Path) -> str:
     for node in ast.parse(text).body:
         if isinstance(node, (ast.Import, ast.ImportFrom)):
             exec(compile(ast.Module([node], []), path.name, "exec"), names)
-    parts, folded = [], False
+    parts, folded, printed = [], False, stored(path)
     for markdown, body in cells(text):
         if markdown and SOLUTIONS in body:
             body = body.replace(
                 SOLUTIONS, f"{SOLUTIONS}\n\n<details><summary>Show</summary>\n"
             )
             folded = True
-        parts += [body] if markdown else _code(body, names)
+        parts += [body] if markdown else shown_code(body, names, printed)
     if folded:
         parts.append("</details>")
     parts.append(_foot(path))
     return "\n\n".join(parts) + "\n"
 
 
-def _code(body: str, names: dict[str, Any]) -> list[str]:
-    """Give a cell's code, the library's code that it names, and its pictures."""
+def shown_code(body: str, names: dict[str, Any], printed: dict[str, Any]) -> list[str]:
+    """Give a cell's code, the library's that it names, what it prints and draws."""
     parts, tree = [], ast.parse(body)
     shown = calls(body)
     sources = [call for method, call in shown if method == "source"]
@@ -114,12 +136,41 @@ def _code(body: str, names: dict[str, Any]) -> list[str]:
             path, _, code = source_of(eval(dotted, names))
             link = f"[`{path}`](../{path})"
             parts.append(f"From {link}:\n\n```python\n{code}\n```")
+            if path.startswith("refcloud/plain/"):
+                parts += _called(eval(dotted, names), code)
+    if lines := printed.get(key_of(body)):
+        parts.append("It prints:\n\n```text\n" + "\n".join(lines) + "\n```")
+        if any(method == "timed" for method, _ in shown):
+            parts.append(TIMES.format(printed[MACHINE]))
     for method, call in shown:
         if method in DRAWS:
             texts = [_text(a) for a in call.args[1:]]
             name, caption = [text for text in texts if text is not None][-2:]
             parts.append(f"![{caption}](pictures/{name}.png)")
     return parts
+
+
+def _called(function: Callable[..., Any], code: str) -> list[str]:
+    """Say what a plain form calls, where it stands and what it does, folded."""
+    room = inspect.unwrap(function).__globals__
+    named = {
+        node.func.id: room.get(node.func.id)
+        for node in ast.walk(ast.parse(code))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
+    rows = {}
+    for name, what in named.items():
+        place = str(getattr(what, "__module__", "")).replace(".", "/") + ".py"
+        if place.startswith("refcloud/"):
+            rows[name] = f"* `{name}`, [`{place}`](../{place}): {summary(what)}"
+    if not rows:
+        return []
+    head = ", ".join(f"<code>{name}</code>" for name in rows)
+    fold = f"<details><summary>It calls {head}</summary>"
+    return [fold, "\n".join(rows.values()), "</details>"]
+
+
+TIMES = "(Times are of one core of the machine that drew this page: {}.)"
 
 
 def _foot(path: Path) -> str:
@@ -184,14 +235,45 @@ def table(folder: str = "") -> str:
     return "\n".join(rows) + "\n"
 
 
-def draw(path: Path, folder: Path, *flags: str) -> None:
-    """Run a tutorial as a reader does, its pictures into a folder."""
+def draw(path: Path, folder: Path, *flags: str) -> dict[str, list[str]]:
+    """Run a tutorial as a reader does, its pictures into a folder.
+
+    Parameters
+    ----------
+    path, folder
+        Of the tutorial, and where its pictures go.
+    flags
+        Of the run.
+
+    Returns
+    -------
+    The lines that each cell printed, by `key_of`; of cells that print.
+    """
     words, paths = sys.argv, list(sys.path)
     sys.argv = [str(path), *flags, "--output", str(folder)]
+    text, printed = path.read_text("utf-8"), {}
+    names: dict[str, Any] = {"__name__": "__main__"}
     try:
-        runpy.run_path(str(path), run_name="__main__")
+        for markdown, body in cells(text):
+            if markdown:
+                continue
+            above = "\n" * text[: text.index(body)].count("\n")  # lines keep numbers
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                exec(compile(above + body, str(path), "exec"), names)
+            if lines := said.getvalue().splitlines():
+                printed[key_of(body)] = lines
     finally:
         sys.argv, sys.path = words, paths
+    return printed
+
+
+def _keep(path: Path, printed: dict[str, list[str]]) -> None:
+    """Store what a tutorial printed beside its pictures; nothing where it is silent."""
+    file = PICTURES / f"{path.name[:2]}.json"
+    file.unlink(missing_ok=True)
+    if printed:
+        text = json.dumps({MACHINE: machine(), **printed}, indent=1, ensure_ascii=False)
+        file.write_text(text + "\n", "utf-8", newline="\n")
 
 
 def main(words: list[str]) -> None:
@@ -203,7 +285,7 @@ def main(words: list[str]) -> None:
             if not words[1:] or path.name[:2] in words[1:]:
                 for old in QUICK.glob(f"{path.name[:2]}-*.png"):
                     old.unlink()
-                draw(path, PICTURES)
+                _keep(path, draw(path, PICTURES))
                 draw(path, QUICK, "--quick")
     for path in tutorials():
         path.with_suffix(".md").write_text(page_of(path), "utf-8", newline="\n")

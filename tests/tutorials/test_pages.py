@@ -111,6 +111,54 @@ def test_pictures_are_those_that_are_declared() -> None:
     assert size <= MOST_BYTES, f"{size} bytes"
 
 
+@pytest.mark.parametrize("path", PATHS, ids=stem)
+def test_pages_show_what_their_cells_print(path: Path) -> None:
+    kept = page.stored(path)
+    host = kept.pop(page.MACHINE, "")
+    text, told = path.with_suffix(".md").read_text("utf-8"), set()
+    for markdown, body in page.cells(path.read_text("utf-8")):
+        if markdown or not re.search(r"\bprint\(|\blesson\.(told|timed)\(", body):
+            continue
+        told.add(page.key_of(body))
+        lines = "\n".join(kept.get(page.key_of(body), ["(nothing)"]))
+        block = f"```python\n{body}\n```\n\nIt prints:\n\n```text\n{lines}\n```\n"
+        assert block in text, f"run python tutorials/page.py --pictures {path.name[:2]}"
+        if "lesson.timed(" in body:
+            assert f"{block}\n{page.TIMES.format(host)}\n" in text
+    assert set(kept) == told, "what was printed by code that is no longer there"
+
+
+def test_pages_say_what_a_plain_form_calls() -> None:
+    ten, twelve = (PATHS[k].with_suffix(".md").read_text("utf-8") for k in (9, 11))
+    row = r"^\* `(\w+)`, \[`(refcloud/plain/\w+\.py)`\]\(\.\./\2\): ([A-Z].+\.)$"
+    called = {name: said for name, _, said in re.findall(row, twelve, re.M)}
+    assert {"draw", "ball_colours", "light_field", "Scene"} <= set(called)
+    assert called["draw"].startswith("Blend one ball over what lies behind it")
+    assert "patch" in {name for name, *_ in re.findall(row, ten, re.M)}
+    assert "range" not in re.findall(r"<code>(\w+)</code>", ten), "Python's own"
+
+
+def test_a_changed_cell_does_not_show_what_the_old_one_printed() -> None:
+    text = PATHS[5].read_text("utf-8")
+    (body,) = (body for _, body in page.cells(text) if "print(" in body)
+    kept = page.stored(PATHS[5])
+    assert "It prints:" in "".join(page.shown_code(body, {}, kept))
+    changed = body.replace("of the ellipsoid is cloud", "is cloud")
+    assert changed != body
+    assert "It prints:" not in "".join(page.shown_code(changed, {}, kept))
+
+
+def test_what_a_cell_prints_is_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = tmp_path / "99_two.py"
+    bodies = "import lesson\nprint(1)", "n = 2", "print(n)\nprint(n + 1)"
+    script.write_text("# %%\n" + "\n\n# %%\n".join(bodies) + "\n", "utf-8")
+    first, _, last = (page.key_of(body) for body in bodies)
+    assert page.draw(script, tmp_path) == {first: ["1"], last: ["2", "3"]}
+    assert capsys.readouterr().out == ""
+
+
 def test_pages_link_to_each_other() -> None:
     for file in sorted(page.HERE.glob("*.md")):
         text = re.sub(r"^```.*?^```$", "", file.read_text("utf-8"), flags=re.M | re.S)

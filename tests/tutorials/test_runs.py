@@ -32,7 +32,9 @@ ERRORS = ("12-same", "15-error", "15-promise")
 @pytest.mark.slow
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
 def test_a_tutorial_draws_its_stored_pictures(path: Path, tmp_path: Path) -> None:
-    page.draw(path, tmp_path, "--quick")
+    printed = page.draw(path, tmp_path, "--quick")
+    kept = page.stored(path).keys() - {page.MACHINE}
+    assert set(printed) == kept, "the cells that print are those whose text is kept"
     declared = page.pictures_of(path)
     assert {file.stem for file in tmp_path.iterdir()} == set(declared)
     for name in declared:
