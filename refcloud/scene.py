@@ -165,10 +165,20 @@ def own_of(scene: Scene, view: View, model: Model | None = None) -> Own:
 
     Returns
     -------
-    The scene's own camera, suns, medium and look.
+    The scene's own camera, suns, medium and look; nothing where it does not say.
+
+    Examples
+    --------
+    >>> import refcloud as rc
+    >>> own = own_of(find_scene("cumulus"), View(320, 240))
+    >>> denser = replace(own.medium, sigma_t=3.0)  # for rc.render("cumulus", medium=...
+    >>> denser.albedo
+    0.97
     """
+    if scene.brings is None:
+        return Own()
     bare = replace(view, camera=None)  # the scene's own eye, not the view's
-    own = Own() if scene.brings is None else scene.brings(model, bare)
+    own = scene.brings(model, bare)
     eye = scene.motion.eye
     if eye is None or own.camera is not None or (scene.frames and model is None):
         return own
