@@ -68,6 +68,11 @@ BAD = {
     "animate balls.npz --frames 2 --turn-eye 9 --background transparent -o a.gif": (
         "path: expected an opaque background in .gif"
     ),
+    # options given twice
+    "generate --voxel 5 --voxel 4": "--voxel: expected it once, got it twice; leave one",
+    "generate -o x.npz -o y.npz": "--output: expected it once, got it twice",
+    "generate -ox.npz --output=y.npz": "--output: expected it once, got it twice",
+    f"{RENDER} --dither --no-dither": "--dither: expected it once, got it twice",
     # values
     "generate --octaves 0": r"--octaves: expected a whole number in \[1, 32\], got 0",
     "generate --octaves 2.5": "whole number in .*, got '2.5'",
