@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from refcloud.camera import Camera
-from refcloud.choices import default_medium, default_sun, framed
+from refcloud.choices import default_medium, default_sun, framed, size_of
 from refcloud.cli.options import Option, options_of
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import unit_vector
@@ -22,7 +22,7 @@ from refcloud.lighting import named
 from refcloud.metaballs import Metaballs
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.render import is_marched, render, size_of
+from refcloud.render import is_marched, render
 from refcloud.sky import Sky
 
 SKY = "sky"
