@@ -390,7 +390,7 @@ def test_a_seed_that_changes_nothing_is_said_to(name: str) -> None:
             "background: expected light",
         ),
         (
-            lambda: render(BALLS, **(HOW | {"medium": Medium(1e300)}), width=2),
+            lambda: render(BALLS, **(HOW | {"medium": Medium(1e300)})),
             "sigma_t: expected an optical depth",
         ),
         (

@@ -69,7 +69,7 @@ BAD = {
         "path: expected an opaque background in .gif"
     ),
     # options given twice
-    "generate --voxel 5 --voxel 4": "--voxel: expected it once, got it twice; leave one",
+    "generate --voxel 5 --voxel 4": "--voxel: expected it once, got it twice; leave",
     "generate -o x.npz -o y.npz": "--output: expected it once, got it twice",
     "generate -ox.npz --output=y.npz": "--output: expected it once, got it twice",
     f"{RENDER} --dither --no-dither": "--dither: expected it once, got it twice",
