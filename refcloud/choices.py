@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from refcloud.camera import Camera, frame
+from refcloud.camera import AnyCamera, Camera, frame
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import WHOLE_SPHERE
 from refcloud.lighting import Look
@@ -15,7 +15,10 @@ from refcloud.lighting.depths import through_the_middle
 from refcloud.march.quadrature import grid_through_the_middle
 from refcloud.metaballs import Metaballs
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
+from refcloud.refusal import complaint
 
+# Width and height where the caller names none.
+SIZES: dict[str, tuple[int, int]] = {"quick": (320, 240), "final": (1024, 768)}
 # Optical depth through a cloud's middle where the caller names no medium: a cumulus of
 # this thickness lets almost nothing through its middle and still has soft edges.
 THICKNESS = 40.0
@@ -72,6 +75,35 @@ def default_medium(
     depth = f"optical depth {density * thickness:g} in the middle"
     note = f"medium: sigma_t {sigma_t:.4g}, {depth}"
     return replace(Medium(sigma_t), **changes), note
+
+
+def size_of(
+    width: int | None,
+    height: int | None,
+    quality: str,
+    camera: AnyCamera | None = None,
+) -> tuple[int, int]:
+    """Complete a picture's size; one side alone keeps the shape of the default.
+
+    Raises
+    ------
+    ValueError
+        A camera is given, and its size is another.
+    """
+    if camera is not None:
+        own = {"width": camera.width, "height": camera.height}
+        for name, value in (("width", width), ("height", height)):
+            if value not in (None, own[name]):
+                expected = f"none beside a camera, or its {own[name]}"
+                advice = f"make the camera with another {name}"
+                raise ValueError(complaint(name, expected, f"{value}", advice))
+        return camera.width, camera.height
+    across, down = SIZES[quality]
+    if width is None and height is None:
+        return across, down
+    if width is None:
+        return max(round((height or 1) * across / down), 1), height or 1
+    return width, height or max(round(width * down / across), 1)
 
 
 def framed(cloud: Metaballs | VoxelGrid, width: int, height: int) -> Camera:

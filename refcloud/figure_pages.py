@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
+from refcloud.choices import SIZES
 from refcloud.conventions import Skipped
 from refcloud.figure import DOCUMENTS, Drawn, Figure, find_figure
 from refcloud.files import write_atomically
 from refcloud.processes import workers
 from refcloud.references import DOCUMENTS as SOURCES
 from refcloud.refusal import complaint
-from refcloud.render import SIZES
 from refcloud.scene import View
 
 PAGE = "index.html"

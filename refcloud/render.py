@@ -9,7 +9,13 @@ import numpy as np
 
 from refcloud.camera import Camera, OrthographicCamera, refuse_large
 from refcloud.checking import checked, complaint
-from refcloud.choices import AMBIENT, default_medium, default_sun, framed
+from refcloud.choices import (
+    AMBIENT,
+    default_medium,
+    default_sun,
+    framed,
+    size_of,
+)
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import Layer, draw_layers, idle_seed, passes_of
 from refcloud.conventions import (
@@ -42,8 +48,6 @@ Side = Annotated[int, Range(1, MOST_PIXELS, "pixels")]
 Quality = Literal["quick", "final"]
 Method = Literal["splat", "march"]
 
-# Width and height where the caller names none.
-SIZES: dict[str, tuple[int, int]] = {"quick": (320, 240), "final": (1024, 768)}
 # Parameters that only splats have a use for; the other optional ones are the march's.
 ONLY_SPLATS = ("look", "backend")
 
@@ -89,7 +93,7 @@ def render(
         The eye; None frames the cloud, or takes the scene's own.
     width, height
         Size where no camera is given, pixels; by quality 320 x 240 or 1024 x 768. One
-        alone keeps that shape, 4 to 3. At most 8.3 megapixels together.
+        alone keeps that shape, 4 to 3; a camera has its own. At most 8.3 megapixels.
     suns
         The lights, one or several; None for one from the front left, weaker for light
         that is solved.
@@ -140,14 +144,14 @@ def render(
     Raises
     ------
     ValueError
-        No scene has that name; the picture is over 8.3 megapixels; the backend is
-        missing.
+        No scene has that name; the picture is over 8.3 megapixels, or the camera's
+        size is another; the backend is missing.
 
     Source: paper M, section 4 (W03); document D (R02).
     """
     if isinstance(suns, Sun):
         suns = (suns,)
-    width, height = size_of(width, height, quality)
+    width, height = size_of(width, height, quality, camera)
     passes_of(backend)  # refuses here, before the clouds are made
     if isinstance(cloud, (Scene, str)):
         scene = find_scene(cloud) if isinstance(cloud, str) else cloud
@@ -283,13 +287,3 @@ def _refuse_idle(march: bool, **given: object) -> None:
             expected = f"none beside the method {method}"
             advice = f"choose method {other}, or leave {name} out"
             raise ValueError(complaint(name, expected, "one", advice))
-
-
-def size_of(width: int | None, height: int | None, quality: str) -> tuple[int, int]:
-    """Complete a picture's size; one side alone keeps the shape of the default."""
-    across, down = SIZES[quality]
-    if width is None and height is None:
-        return across, down
-    if width is None:
-        return max(round((height or 1) * across / down), 1), height or 1
-    return width, height or max(round(width * down / across), 1)

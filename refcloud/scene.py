@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from refcloud.camera import AnyCamera
@@ -81,6 +81,35 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class Own:
+    """What a scene is drawn with where the view leaves the choice to it.
+
+    What is None a scene does not take. A view with these very values gives the same
+    picture as one without: who changes a single number starts from here.
+
+    Attributes
+    ----------
+    suns
+        Its suns; none where no sun shines unless one is given.
+    medium, look
+        What its clouds are made of, and the rules of light.
+    scattering
+        How often light is scattered, where a view may choose.
+    open
+        Fields of the medium that only the clouds can tell, when they are not made yet.
+    camera
+        Its eye; of `own_of`.
+    """
+
+    suns: tuple[Sun, ...] | None = None
+    medium: Medium | None = None
+    look: Look | None = None
+    scattering: Literal["single", "multiple"] | None = None
+    open: tuple[str, ...] = ()
+    camera: AnyCamera | None = None
+
+
+@dataclass(frozen=True)
 class Scene:
     """A named scene: its clouds, and how they are drawn.
 
@@ -97,6 +126,11 @@ class Scene:
     uses
         Which of a view's choices change its picture; it is refused a scattering, and
         its picture says that a seed changes nothing, where they are not among them.
+    brings
+        Gives what it is drawn with, but for the eye, for clouds (None before they are
+        made) and a view; None where the scene does not say.
+    frames
+        Whether its eye frames its clouds, which are made first.
     """
 
     name: str
@@ -105,6 +139,8 @@ class Scene:
     draw: Callable[[Model, View], Picture]
     motion: Motion = Motion()
     uses: tuple[Use, ...] = ()
+    brings: Callable[[Model | None, View], Own] | None = None
+    frames: bool = False
 
 
 # Names to scenes; each file of refcloud/scenes enters its own.
@@ -115,6 +151,38 @@ def enter(scene: Scene) -> Scene:
     """Enter a scene into the table, and give it back."""
     SCENES[scene.name] = scene
     return scene
+
+
+def own_of(scene: Scene, view: View, model: Model | None = None) -> Own:
+    """Give what a scene is drawn with, as far as it can be told.
+
+    Parameters
+    ----------
+    scene, view
+        Which, and what of it is chosen: parts that are not None count as they are.
+    model
+        Its clouds; None while they are not made.
+
+    Returns
+    -------
+    The scene's own camera, suns, medium and look; nothing where it does not say.
+
+    Examples
+    --------
+    >>> import refcloud as rc
+    >>> own = own_of(find_scene("cumulus"), View(320, 240))
+    >>> denser = replace(own.medium, sigma_t=3.0)  # for rc.render("cumulus", medium=...
+    >>> denser.albedo
+    0.97
+    """
+    if scene.brings is None:
+        return Own()
+    bare = replace(view, camera=None)  # the scene's own eye, not the view's
+    own = scene.brings(model, bare)
+    eye = scene.motion.eye
+    if eye is None or own.camera is not None or (scene.frames and model is None):
+        return own
+    return replace(own, camera=eye(model or Model({}), bare))
 
 
 def find_scene(name: str) -> Scene:

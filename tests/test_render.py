@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from small_scenes import BACKDROP, BALLS, EXTENDED, EYE, MEDIUM, PAPER, SUNS, drawn
 from twins.lighting import scattered_balls, seeds
 
-from refcloud import scenes
+from refcloud import animate, scenes
 from refcloud.camera import Camera, rays
-from refcloud.choices import AMBIENT, THICKNESS
+from refcloud.choices import AMBIENT, SIZES, THICKNESS
 from refcloud.cloudmap import VoxelGrid
 from refcloud.compose import Layer, draw_layers
 from refcloud.conventions import Skipped
@@ -23,7 +23,7 @@ from refcloud.march import Mixing, integrate
 from refcloud.march_picture import ONCE
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
-from refcloud.render import SIZES, render
+from refcloud.render import render
 from refcloud.scene import SCENES, Model, Scene, View
 from refcloud.sky import Sky, clear_sky
 
@@ -390,7 +390,7 @@ def test_a_seed_that_changes_nothing_is_said_to(name: str) -> None:
             "background: expected light",
         ),
         (
-            lambda: render(BALLS, **(HOW | {"medium": Medium(1e300)}), width=2),
+            lambda: render(BALLS, **(HOW | {"medium": Medium(1e300)})),
             "sigma_t: expected an optical depth",
         ),
         (
@@ -417,3 +417,20 @@ def test_the_default_sun_of_solved_light_leaves_clouds_their_shades() -> None:
     assert any(note.startswith("sun: irradiance 6.28 6.03") for note in picture.notes)
     # Of the cloud's pixels, a hundredth at most would clip.
     assert (picture.codes().max(axis=2) == 255).mean() < 0.01
+
+
+@pytest.mark.parametrize("cloud", [BALLS, GRID, "man-10"])
+@pytest.mark.parametrize(
+    "size", [{"width": 8}, {"height": 7}, {"width": 8, "height": 7}]
+)
+def test_a_size_beside_a_camera_is_the_camera_s_or_refused(cloud, size) -> None:
+    camera = dataclasses.replace(EYE, width=9, height=6)
+    name = next(iter(size))
+    line = f"^{name}: expected none beside a camera, or its .*, got {size[name]}; make"
+    with pytest.raises(ValueError, match=line):
+        render(cloud, camera=camera, **size)
+    with pytest.raises(ValueError, match=line):
+        animate(cloud, "a.png", frames=2, camera=camera, **size)
+    own = {name: getattr(camera, name) for name in size}
+    alone, same = (render(cloud, camera=camera, **how) for how in ({}, own))
+    np.testing.assert_array_equal(alone.linear, same.linear)

@@ -23,6 +23,7 @@ from refcloud.animation.moves import Moves, closes, completed
 from refcloud.animation.workers import drawn
 from refcloud.camera import Camera, OrthographicCamera, refuse_large
 from refcloud.checking import checked
+from refcloud.choices import size_of
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import (
     Array,
@@ -44,7 +45,7 @@ from refcloud.march import Mixing
 from refcloud.march.multiple import Scattering
 from refcloud.metaballs import Metaballs
 from refcloud.optics import Medium, Sun
-from refcloud.render import Method, Quality, Side, size_of
+from refcloud.render import Method, Quality, Side
 from refcloud.scene import Scene, View
 from refcloud.sky import Sky
 
@@ -194,10 +195,7 @@ def animate(
         "ambient": ambient,
         "mixing": mixing,
     }
-    if camera is None:
-        width, height = size_of(width, height, quality)
-    else:
-        width, height = camera.width, camera.height
+    width, height = size_of(width, height, quality, camera)
     refuse_large(width, height)
     view = View(
         width,

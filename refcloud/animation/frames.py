@@ -18,7 +18,7 @@ from refcloud.animation.job import Job
 from refcloud.animation.moves import moved, share_of
 from refcloud.conventions import Skipped
 from refcloud.image.encode import Codes
-from refcloud.scene import Model
+from refcloud.scene import Model, own_of
 
 
 @dataclass(frozen=True)
@@ -70,6 +70,10 @@ def draw_frame(job: Job, index: int) -> Frame:
         view = dataclasses.replace(
             job.view, kept=None if job.moves.turn_sun else stage.kept
         )
+        if job.moves.turn_sun and view.suns is None:
+            # The suns that the scene has for this look, medium and scattering.
+            own = own_of(job.scene, view, stage.model)
+            view = dataclasses.replace(view, suns=own.suns)
         share = share_of(index, job.frames, job.closed)
         view = moved(view, stage.model, job.scene.motion, job.moves, share)
         picture = job.scene.draw(stage.model, view)

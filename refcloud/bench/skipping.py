@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from refcloud.bench.timing import machine
+from refcloud.choices import SIZES
 from refcloud.conventions import Skipped
-from refcloud.render import SIZES, render
+from refcloud.render import render
 from refcloud.scene import SCENES
 
 TOLERANCE = 1.0 / 255.0

@@ -161,6 +161,7 @@ class Command:
         """Part arguments from options, and join each option with its values."""
         arguments: list[str] = []
         flags: list[str] = []
+        seen: set[str] = set()
         while words:
             word = words.pop(0)
             if word == "--":
@@ -173,6 +174,7 @@ class Command:
             if flag not in self._flags and not self._is_short_output(word):
                 self._refuse(flag)
             option = self._options.get(flag)
+            self._once(flag, seen)
             takes = flag in ("-o", OUTPUT) or (option and not option.is_switch)
             if equals or not takes:
                 flags.append(word)
@@ -183,6 +185,18 @@ class Command:
                 raise ValueError(complaint(flag, kind, "no value"))
             flags.append(f"{OUTPUT if flag == '-o' else flag}={' '.join(values)}")
         return arguments, flags
+
+    def _once(self, flag: str, seen: set[str]) -> None:
+        """Refuse an option that comes a second time, unless it may be repeated."""
+        name = flag
+        if flag not in self._flags or flag == "-o":
+            name = OUTPUT  # also as -oFILE
+        elif flag.startswith("--no-") and "--" + flag[5:] in self._options:
+            name = "--" + flag[5:]
+        option = self._options.get(name)
+        if name in seen and not (option and option.repeated) and flag not in HELP:
+            raise ValueError(complaint(name, "it once", "it twice", "leave one out"))
+        seen.add(name)
 
     @staticmethod
     def _values(option: Option | None, words: list[str]) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any
 
 from refcloud.camera import AnyCamera
 from refcloud.choices import framed
+from refcloud.cli.changed import changed
 from refcloud.cli.clouds import denser, describe, find, load, scene_of
 from refcloud.cli.docstrings import parameter_texts, summary
 from refcloud.cli.options import Option, options_of
@@ -35,7 +36,7 @@ from refcloud.metaballs import Levels, Metaballs, choose_level
 from refcloud.metaballs.levels import covered_share, picture_bounds
 from refcloud.refusal import complaint
 from refcloud.render import as_drawn, render
-from refcloud.scenes import Scene
+from refcloud.scenes import Scene, View
 
 ABOUT = summary(render)
 TEXTS = parameter_texts(render)
@@ -61,6 +62,9 @@ OPTIONS, BACKGROUND = _options()
 SAVING = options_of(Picture.codes)
 DENSITY = options_of(denser, without=("cloud",))
 MIXING = options_of(Mixing)
+PARTS = {"camera": CAMERA, "suns": SUN, "medium": MEDIUM}
+SEVERAL = "A scene with several suns takes as many directions, or an irradiance too."
+BESIDE = "Beside a scene what is not given stays the scene's own."
 
 
 def command() -> Command:
@@ -82,9 +86,9 @@ def command() -> Command:
 def add_groups(made: Command, options: Iterable[Option]) -> None:
     """Add the options of pictures under their titles."""
     made.group("the picture", "", options)
-    made.group("the camera", TEXTS["camera"], CAMERA)
-    made.group("the light", TEXTS["suns"], SUN)
-    made.group("the cloud's medium", TEXTS["medium"], (*MEDIUM, *DENSITY))
+    made.group("the camera", f"{TEXTS['camera']} {BESIDE}", CAMERA)
+    made.group("the light", f"{TEXTS['suns']} {BESIDE} {SEVERAL}", SUN)
+    made.group("the cloud's medium", f"{TEXTS['medium']} {BESIDE}", (*MEDIUM, *DENSITY))
     made.group("how marched light mixes", TEXTS["mixing"], MIXING)
     made.group("behind the cloud", "", BACKGROUND)
     made.group("the file", "", SAVING)
@@ -139,20 +143,17 @@ def prepared(
     -------
     The cloud or the scene's name, further keywords of `render`, and what to say.
     """
-    what = given.arguments[0]
-    is_scene = find(what)
-    size = size_for(chosen)
-    suns = suns_for(given.of(SUN), is_scene, chosen.get("scattering"))
-    if is_scene:
-        cloud, notes = scene_of(what), []
-    else:
-        with stages.stage("load"):
-            cloud = load(what)
-        notes = [f"{what}: {describe(cloud)}"]
+    what, size = given.arguments[0], size_for(chosen)
+    if find(what):
+        return of_scene(given, chosen, scene_of(what))
+    suns = suns_for(given.of(SUN), False, chosen.get("scattering"))
+    with stages.stage("load"):
+        cloud = load(what)
+    notes = [f"{what}: {describe(cloud)}"]
     levels = cloud if isinstance(cloud, Levels) else None
     cloud = cloud.finest if isinstance(cloud, Levels) else cloud
     method = chosen.get("method")
-    shown = None if isinstance(cloud, Scene) else as_drawn(cloud, method)
+    shown = as_drawn(cloud, method)
     camera = camera_for(given.of(CAMERA), shown, size)
     scale, mixing = given.of(DENSITY), given.of(MIXING)
     # A factor on the density counts against the file's own optical depth.
@@ -167,17 +168,32 @@ def prepared(
         camera = camera or framed(levels.finest, *size)
         cloud = choose_level(levels, camera, tolerance=chosen["tolerance"])
         notes.append(level_note(levels, camera, cloud))
-    if not isinstance(cloud, Scene):
-        cloud = denser(cloud, **scale)
-    elif scale:
-        raise ValueError(complaint("--density", "none beside a scene", "one"))
     parts = {
         "camera": camera,
         "suns": suns,
         "medium": medium,
         "mixing": Mixing(**mixing) if mixing else None,
     }
-    return cloud, parts, [*notes, *note]
+    return denser(cloud, **scale), parts, [*notes, *note]
+
+
+def of_scene(
+    given: Given, chosen: Mapping[str, Any], scene: Scene
+) -> tuple[Scene, dict[str, Any], list[str]]:
+    """Change a scene's own camera, suns and medium by what was typed."""
+    for option in (*DENSITY, *MIXING):
+        if option.flag in given.options:
+            raise ValueError(complaint(option.flag, "none beside a scene", "one"))
+    size, scattering = size_for(chosen), chosen.get("scattering")
+    if scene.brings is None:
+        medium, note = medium_for(given.of(MEDIUM), None, chosen.get("look"), None)
+        suns = suns_for(given.of(SUN), True, scattering)
+        camera = camera_for(given.of(CAMERA), None, size)
+        return scene, {"camera": camera, "suns": suns, "medium": medium}, [*note]
+    typed = {name: given.of(each) for name, each in PARTS.items()}
+    view = View(*size, look=chosen.get("look"), scattering=scattering)
+    parts, notes = changed(scene, view, **typed)
+    return scene, parts, list(notes)
 
 
 def level_note(levels: Levels, camera: AnyCamera, chosen: Metaballs) -> str:

@@ -1,7 +1,8 @@
 """Camera, suns, medium and background from options; what is left out is completed.
 
-A file's cloud is there to be framed and measured, so each part may be given alone. A
-scene makes its own choices inside, so a part that it cannot complete is asked for.
+A file's cloud is there to be framed and measured, so each part may be given alone.
+What completes a scene's parts is in `refcloud.cli.changed`; a scene that does not say
+what it is drawn with is given whole parts.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from refcloud.camera import Camera
-from refcloud.choices import default_medium, default_sun, framed
+from refcloud.choices import default_medium, default_sun, framed, size_of
 from refcloud.cli.options import Option, options_of
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import unit_vector
@@ -21,7 +22,7 @@ from refcloud.lighting import named
 from refcloud.metaballs import Metaballs
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.render import is_marched, render, size_of
+from refcloud.render import is_marched, render
 from refcloud.sky import Sky
 
 SKY = "sky"
@@ -121,11 +122,7 @@ def medium_for(
     """
     if not given and density is None:
         return None, ()
-    if given.get("phase", "hg") != "hg" and "g" in given:
-        expected = f"none beside --phase {given['phase']}"
-        raise ValueError(complaint("--g", expected, "one", "--phase hg has a g"))
-    if "g" in given and "phase" not in given:
-        given = {**given, "phase": "hg"}  # the only phase function that has a g
+    given = with_phase(given)
     rules = (
         None
         if cloud is not None and is_marched(cloud, method)
@@ -145,6 +142,28 @@ def medium_for(
     return medium, (note,)
 
 
+def with_phase(given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Add the phase function that has a g, where a g was typed and no phase.
+
+    Raises
+    ------
+    ValueError
+        Another phase function was typed beside a g.
+    """
+    if given.get("phase", "hg") != "hg" and "g" in given:
+        expected = f"none beside --phase {given['phase']}"
+        raise ValueError(complaint("--g", expected, "one", "--phase hg has a g"))
+    return {**given, "phase": "hg"} if "g" in given else given
+
+
+def directed(given: Mapping[str, Any]) -> list[Any]:
+    """Give the directions that were typed; a zero is refused by the name typed."""
+    directions = given.get("direction", [])
+    for direction in directions:
+        unit_vector(direction, "--sun")
+    return directions
+
+
 def suns_for(
     given: Mapping[str, Any], is_scene: bool, scattering: str | None = None
 ) -> tuple[Sun, ...] | None:
@@ -159,10 +178,8 @@ def suns_for(
     if not given:
         return None
     default, _ = default_sun(scattering)
-    directions = given.get("direction", [])
+    directions = directed(given)
     light = given.get("irradiance", [])
-    for direction in directions:
-        unit_vector(direction, "--sun")  # refused by the name that was typed
     if not directions:
         if is_scene:
             advice = "a scene's light is given with its direction"

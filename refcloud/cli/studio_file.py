@@ -5,10 +5,10 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
+from refcloud.choices import size_of
 from refcloud.cli.parser import Given
 from refcloud.image import Picture
 from refcloud.refusal import complaint
-from refcloud.render import size_of
 from refcloud.studio.recipe import Kept, cooked
 from refcloud.studio.scene_file import FORMAT, scene_of
 from refcloud.studio.setups import frame_of

@@ -8,6 +8,8 @@ from refcloud.declared.kinds import (
     Kind,
     declared_kind,
     enter_kind,
+    nothing_own,
+    sun_alone,
     told,
 )
 from refcloud.declared.reading import load_scene
@@ -24,7 +26,9 @@ __all__ = [
     "declared_kind",
     "enter_kind",
     "load_scene",
+    "nothing_own",
     "save_scene",
     "scene_from",
+    "sun_alone",
     "told",
 ]

@@ -19,8 +19,9 @@ from refcloud.declared.kinds import Changed, find_kind
 from refcloud.image import Picture
 from refcloud.lighting import Haze, named
 from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
+from refcloud.optics import ALBEDO_MAN2003, Medium
 from refcloud.refusal import within
-from refcloud.scene import Model, Motion, Scene, View
+from refcloud.scene import Model, Motion, Own, Scene, View
 
 LAST = "cloud"
 
@@ -48,6 +49,8 @@ def scene_from(declared: Declaration | Changed) -> Scene:
         partial(draw, declared),
         Motion(partial(eye, declared), declared.suns or (sun,)),
         ("scattering", "seed"),
+        partial(brings, declared),
+        declared.camera is None,
     )
 
 
@@ -102,6 +105,21 @@ def eye(declared: Declaration, model: Model, view: View) -> Camera:
         return Camera(**declared.camera, width=view.width, height=view.height)
     last = model.clouds[LAST]
     return framed(last, view.width, view.height)
+
+
+def brings(declared: Declaration, model: Model | None, view: View) -> Own:
+    """Give the declared suns, medium and look, and what is chosen in their place."""
+    look = declared.look if view.look is None else named(view.look)
+    scattering = view.scattering or declared.scattering
+    suns = declared.suns or (default_sun(scattering)[0],)
+    medium, unknown = declared.medium, ()
+    if medium is None and look.tau is not None:
+        medium = Medium(1.0, ALBEDO_MAN2003)
+    elif medium is None and model is None:
+        medium, unknown = Medium(1.0), ("sigma_t",)
+    elif medium is None and model is not None:
+        medium, _ = default_medium(model.clouds[LAST], look)
+    return Own(suns, medium, look, scattering, unknown)
 
 
 def draw(declared: Declaration, model: Model, view: View) -> Picture:

@@ -14,12 +14,22 @@ from typing import Any
 
 from refcloud.checking import complaint
 from refcloud.image import Picture
-from refcloud.scene import Model, Motion, Scene, Use, View, enter
+from refcloud.scene import Model, Motion, Own, Scene, Use, View, enter
 
 
 def nothing_yet(of: Any) -> Model:
     """Make no clouds before the picture is asked for."""
     return Model({})
+
+
+def nothing_own(of: Any, model: Model | None, view: View) -> Own:
+    """Take no suns, medium or look."""
+    return Own()
+
+
+def sun_alone(of: Any, model: Model | None, view: View) -> Own:
+    """Take suns, and have one in the parameters."""
+    return Own((of.sun,))
 
 
 def told(draw: Callable[..., Picture], of: Any, model: Model, view: View) -> Picture:
@@ -45,6 +55,8 @@ class Kind:
         Makes the clouds, from parameters.
     uses
         As of `Scene`.
+    brings
+        Gives what the scene is drawn with, from parameters, clouds and a view.
     """
 
     name: str
@@ -54,11 +66,13 @@ class Kind:
     motion: Callable[[Any], Motion]
     model: Callable[[Any], Model] = nothing_yet
     uses: tuple[Use, ...] = ()
+    brings: Callable[[Any, Model | None, View], Own] = nothing_own
 
     def scene(self, name: str, title: str, of: Any) -> Scene:
         """Make a scene of this kind with parameters `of`."""
         model, draw = partial(self.model, of), partial(self.draw, of)
-        return Scene(name, title, model, draw, self.motion(of), self.uses)
+        brings = partial(self.brings, of)
+        return Scene(name, title, model, draw, self.motion(of), self.uses, brings)
 
 
 @dataclass(frozen=True)

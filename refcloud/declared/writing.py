@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -16,15 +17,18 @@ from refcloud.declared.kinds import Changed
 from refcloud.files import write_atomically
 from refcloud.lighting import named
 from refcloud.optics import Sun
+from refcloud.parameters import parameter_texts
 from refcloud.sky import Sky
 
+WIDTH = 88  # of a line of comment
 DELETE, ESCAPED_DELETE = "\x7f", "\\u007f"  # JSON writes it as it is, TOML forbids it
 
 
 def save_scene(path: str | Path, scene: Declaration | Changed) -> Path:
     """Write a declaration as TOML; what has its default is left out.
 
-    Parameters of a kind are all written, so that they can be seen and changed.
+    Parameters of a kind are all written, so that they can be seen and changed, each
+    under a comment that says what it is.
 
     Parameters
     ----------
@@ -72,11 +76,18 @@ def _kind_lines(scene: Changed) -> list[str]:
     lines = [f'format = "{FORMAT}"', f"version = {VERSION}"]
     lines += [f"kind = {_value(scene.kind)}"]
     lines += [f"name = {_value(scene.name)}", f"title = {_value(scene.title)}"]
-    return [*lines, *_nested("parameters", scene.of)]
+    texts = parameter_texts(type(scene.of))
+    return [*lines, *_nested("parameters", scene.of, texts=texts)]
 
 
-def _nested(name: str, thing: Any, marks: str = "[]") -> list[str]:
-    """Write a dataclass as a table, its plain fields before those with tables."""
+def _nested(
+    name: str, thing: Any, marks: str = "[]", *, texts: Mapping[str, str] | None = None
+) -> list[str]:
+    """Write a dataclass as a table, its plain fields before those with tables.
+
+    Fields that have a text get it as a comment.
+    """
+    texts = texts or {}
     fields = {f.name: getattr(thing, f.name) for f in dataclasses.fields(thing)}
     rows = {
         key: value
@@ -86,13 +97,28 @@ def _nested(name: str, thing: Any, marks: str = "[]") -> list[str]:
     inner = {k: v for k, v in fields.items() if dataclasses.is_dataclass(v)}
     plain = {k: v for k, v in fields.items() if k not in rows and k not in inner}
     half = len(marks) // 2
-    lines = _section(f"{marks[:half]}{name}{marks[half:]}", plain)
+    lines = ["", f"{marks[:half]}{name}{marks[half:]}"]
+    told = ""
+    for key, value in plain.items():
+        text = texts.get(key, "")
+        # Fields that share their text follow each other.
+        lines += [] if text == told else _comment(text)
+        told = text
+        lines += [] if value is None else [f"{key} = {_value(value)}"]
     for key, value in inner.items():
-        lines += _nested(f"{name}.{key}", value)
+        table = _nested(f"{name}.{key}", value)[1:]
+        lines += ["", *_comment(texts.get(key, "")), *table]
     for key, values in rows.items():
-        for value in values:
-            lines += _nested(f"{name}.{key}", value, "[[]]")
+        lines += ["", *_comment(texts.get(key, ""))] if values else []
+        for number, value in enumerate(values):
+            # The first stands right under its comment.
+            lines += _nested(f"{name}.{key}", value, "[[]]")[number == 0 :]
     return lines
+
+
+def _comment(text: str) -> list[str]:
+    """Write a text as lines of comment."""
+    return [f"# {line}" for line in textwrap.wrap(text, WIDTH - 2)]
 
 
 def _changed(thing: Any, default: Any) -> dict[str, Any]:

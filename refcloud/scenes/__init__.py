@@ -1,6 +1,6 @@
 """Named scenes: the composed cumulus, and the figures of the documents."""
 
-from refcloud.scene import SCENES, Model, Motion, Scene, View
+from refcloud.scene import SCENES, Model, Motion, Own, Scene, View, own_of
 from refcloud.scenes import (
     cumulus,
     demand,
@@ -23,6 +23,7 @@ __all__ = [
     "SCENES",
     "Model",
     "Motion",
+    "Own",
     "Scene",
     "View",
     "cumulus",
@@ -34,6 +35,7 @@ __all__ = [
     "man_passes",
     "man_plots",
     "multiple",
+    "own_of",
     "shader",
     "shader_diagrams",
     "shader_light",

@@ -30,7 +30,7 @@ from refcloud.lighting.look import GROUND_LIGHT, SKY_LIGHT
 from refcloud.metaballs import Metaballs, approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import within
-from refcloud.scene import Model, Motion, View
+from refcloud.scene import Model, Motion, Own, View
 from refcloud.sky import Sky
 from refcloud.transport.plans import PLANS
 
@@ -88,7 +88,8 @@ class Cumulus:
     sun, medium
         The light, and what clouds are made of.
     single_sun, single_medium
-        Those of light that is scattered once.
+        In the place of sun and medium where light is scattered once: with --scattering
+        single, by the paper's rules (--look man), or in a coloured medium.
     """
 
     eye: Vector
@@ -165,18 +166,26 @@ def model(of: Cumulus = OWN) -> Model:
     return Model(clouds, tuple(notes), tuple(skipped), seconds)
 
 
-def draw(of: Cumulus, model: Model, view: View) -> Picture:
-    """Light and draw the clouds, the farthest first."""
+def brings(of: Cumulus, model: Model | None, view: View) -> Own:
+    """Give sun, medium and look: those of solved light, or of light scattered once."""
     look: Look = named(view.look or "cumulus")
     scattering = view.scattering or _best(view)
-    solved = scattering == "multiple"
-    if solved and view.look is None:
+    if scattering == "single":
+        return Own((of.single_sun,), of.single_medium, look, scattering)
+    if view.look is None:
         look = dataclasses.replace(look, **SOLVED)
-    medium = view.medium or (of.medium if solved else of.single_medium)
-    light = of.sun if solved else of.single_sun
+    return Own((of.sun,), of.medium, look, scattering)
+
+
+def draw(of: Cumulus, model: Model, view: View) -> Picture:
+    """Light and draw the clouds, the farthest first."""
+    own = brings(of, model, view)
+    look, medium = own.look, view.medium or own.medium
+    assert look is not None
+    assert medium is not None
     plan = dataclasses.replace(PLAN, double=view.tolerance < SINGLE_PRECISION)
     far = dataclasses.replace(look, **FIELD_BUFFERS)
-    here = {"scattering": scattering, "plan": plan}
+    here = {"scattering": own.scattering, "plan": plan}
     layers = [
         Layer(
             standing(model.clouds[name], place),
@@ -193,7 +202,7 @@ def draw(of: Cumulus, model: Model, view: View) -> Picture:
     return draw_layers(
         layers,
         view.camera or camera(view, of),
-        (light,) if view.suns is None else view.suns,
+        own.suns or () if view.suns is None else view.suns,
         Sky(),
         tolerance=view.tolerance,
         seed=view.seed,
@@ -241,5 +250,6 @@ enter_kind(
         turning,
         model,
         ("scattering", "seed"),
+        brings,
     )
 )

@@ -14,14 +14,13 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import numpy as np
 
 from refcloud.camera import Camera, rays
-from refcloud.checking import check_fields, complaint
+from refcloud.checking import complaint
 from refcloud.cloudmap import (
     VoxelGrid,
     box_cloud,
@@ -33,102 +32,20 @@ from refcloud.cloudmap import (
 from refcloud.conventions import (
     WHOLE_SPHERE,
     Array,
-    Positive,
-    Range,
-    Seed,
-    Shape,
-    Vector,
 )
-from refcloud.declared import Kind, enter_kind
+from refcloud.declared import Kind, enter_kind, nothing_own
 from refcloud.image import Picture, srgb_decode
 from refcloud.lighting import Octaves, octave_march
 from refcloud.march import ray_box
 from refcloud.optics import Medium, Sun
 from refcloud.raster import Framebuffer, draw_box
 from refcloud.raster.walls import LIGHT_BLUE
-from refcloud.scene import Model, Motion, Use, View
-from refcloud.scenes.demand_plane import mended, pair, plain, refuse_given
+from refcloud.scene import Model, Motion, Own, Use, View
+from refcloud.scenes.demand_kinds import Boxed, Faces, Lumps
+from refcloud.scenes.demand_plane import halved, mended, pair, plain, refuse_given
 
 VOXEL, COARSEST = 0.02, 0.1  # scene units: of a picture 1024 pixels wide; at most
 DARK, NO_WALL = np.zeros(3), np.zeros(4)
-
-
-@dataclass(frozen=True)
-class Lumps:
-    """The cloud in the box: what `refcloud.cloudmap.box_cloud` takes.
-
-    Attributes
-    ----------
-    cell
-        Between the points of the Worley noise.
-    seed
-        Which points.
-    threshold
-        Noise below it is empty.
-    edge
-        How far from each wall density is taken away, as shares of the box's halves.
-    """
-
-    cell: Annotated[float, Positive]
-    seed: Seed
-    threshold: Annotated[float, Range(0.0, 1.0, open_upper=True)]
-    edge: Annotated[Array, Shape(3), Range(0.0, 1.0)]
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-
-
-@dataclass(frozen=True)
-class Boxed:
-    """A cloud in its box.
-
-    Attributes
-    ----------
-    lower, upper
-        The box by its rear left lower and front right upper corner.
-    cloud
-        What stands in it.
-    eye, target, fov_y
-        The camera; of a picture 4 to 3.
-    sun, medium
-        What the cloud is lit by and made of.
-    light
-        How light is scattered in it.
-    shone
-        Whether a sun shines at all; by Beer's law alone every place shines by itself.
-    frame
-        What of the box is drawn.
-    """
-
-    lower: Vector
-    upper: Vector
-    cloud: Lumps
-    eye: Vector
-    target: Vector
-    fov_y: Annotated[float, Range(0.01, 3.1, "radians")]
-    sun: Sun
-    medium: Medium
-    light: Octaves
-    shone: bool
-    frame: Literal["walls", "lines", "none"]
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-
-
-@dataclass(frozen=True)
-class Faces:
-    """The wrong try: a texture on a box, by what `worley_smooth_texture` takes."""
-
-    lower: Vector
-    upper: Vector
-    size: Annotated[int, Range(4, 256, "texels")]
-    cells: Annotated[int, Range(1, 64)]
-    seed: Seed
-    threshold: Annotated[float, Range(0.0, 1.0, open_upper=True)]
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 # Light models: single scattering, with light from the sky; or every place shines white,
@@ -263,6 +180,16 @@ def own_eye(model: Model, view: View, *, of: Boxed = OWN) -> Camera:
     return eye(view, of)
 
 
+def half_eye(model: Model, view: View, *, of: Boxed) -> Camera:
+    """Give the eye of both pictures of a pair, whose width is that of the pair."""
+    return dataclasses.replace(eye(halved(view), of), width=view.width)
+
+
+def brings(of: Boxed, model: Model | None, view: View) -> Own:
+    """Give the sun, if it shines, and the medium."""
+    return Own((of.sun,) if of.shone else None, of.medium)
+
+
 def over_opaque(light: Array) -> Framebuffer:
     """Make a framebuffer of what stands behind everything."""
     return Framebuffer(np.concatenate([light, np.ones_like(light[..., :1])], axis=-1))
@@ -280,17 +207,38 @@ def blown(of: Boxed) -> Motion:
     return Motion(partial(own_eye, of=of), suns, repeats=never)
 
 
+def both_blown(of: Boxed) -> Motion:
+    """Turn the eye of two pictures, and the rest as in one."""
+    return dataclasses.replace(blown(of), eye=partial(half_eye, of=of))
+
+
 def turning(of: Faces) -> Motion:
     """Turn the eye alone."""
     return Motion(own_eye)
 
 
-for name, title, own, draw, motion in (
-    ("box", "the box, its walls and the cloud", WALLED, boxed, blown),
-    ("faces", "the wrong try, a texture on the faces", FACES, faces, turning),
-    ("quad", "the cloud by Beer's law alone", QUAD, boxed, blown),
-    ("lit", "the cloud, lit", OWN, boxed, blown),
-    ("background", "a plain background and the sky", OWN, backgrounds, blown),
+for name, title, own, draw, motion, parts in (
+    ("box", "the box, its walls and the cloud", WALLED, boxed, blown, brings),
+    (
+        "faces",
+        "the wrong try, a texture on the faces",
+        FACES,
+        faces,
+        turning,
+        nothing_own,
+    ),
+    ("quad", "the cloud by Beer's law alone", QUAD, boxed, blown, brings),
+    ("lit", "the cloud, lit", OWN, boxed, blown, brings),
+    (
+        "background",
+        "a plain background and the sky",
+        OWN,
+        backgrounds,
+        both_blown,
+        brings,
+    ),
 ):
     title = f"document D: {title}"
-    enter_kind(Kind(f"demand-{name}", title, own, draw, motion, uses=USES))
+    enter_kind(
+        Kind(f"demand-{name}", title, own, draw, motion, uses=USES, brings=parts)
+    )

@@ -36,7 +36,7 @@ from refcloud.lighting import Octaves, block_means, octave_march, solved_march
 from refcloud.lighting.octave_march import SINGLE_PRECISION
 from refcloud.optics import Medium, Sun
 from refcloud.raster.meeting import reached_by_box, shares_of, together
-from refcloud.scene import Model, Motion, View
+from refcloud.scene import Model, Motion, Own, View
 from refcloud.scenes import cumulus
 from refcloud.scenes.cumulus import Placed
 from refcloud.scenes.demand import marched_alone
@@ -69,7 +69,8 @@ class Hero:
     sky
         Times the light from sky and ground of the octaves.
     octave_sun, octave_medium
-        Those of light that is scattered in octaves.
+        In the place of sun and medium where light is scattered in octaves: with
+        --scattering single, or in a coloured medium.
     """
 
     eye: Vector
@@ -107,15 +108,24 @@ OWN = Hero(
 )
 
 
+def brings(of: Hero, model: Model | None, view: View) -> Own:
+    """Give sun and medium: those of solved light, or of octaves."""
+    scattering = view.scattering or best(view)
+    if scattering == "single":
+        return Own((of.octave_sun,), of.octave_medium, scattering=scattering)
+    return Own((of.sun,), of.medium, scattering=scattering)
+
+
 def draw(of: Hero, model: Model, view: View) -> Picture:
     """Generate, light and march the clouds, the farthest first."""
     marched_alone(view)
     camera = view.camera or own_eye(model, view, of=of)
-    solved = (view.scattering or best(view)) == "multiple"
-    sun, medium = of.octave_sun, view.medium or of.octave_medium
-    if solved:
-        sun, medium = of.sun, view.medium or of.medium
-    suns = (sun,) if view.suns is None else view.suns
+    own = brings(of, model, view)
+    solved, medium = (
+        own.scattering == "multiple",
+        view.medium or own.medium or of.medium,
+    )
+    suns = own.suns or () if view.suns is None else view.suns
     seconds = {"sky": 0.0, "generate": 0.0, "march": 0.0}
     start = time.perf_counter()
     light = clear_sky(camera, Sky())
@@ -280,5 +290,6 @@ enter_kind(
         draw,
         turning,
         uses=("scattering", "seed"),
+        brings=brings,
     )
 )

@@ -152,6 +152,11 @@ def skies(of: Gradient, model: Model, view: View) -> Picture:
     return pair(view, lambda v: Picture(printed(v)), lambda v: Picture(right(v)))
 
 
+def halved(view: View) -> View:
+    """Give the view of each of two pictures side by side."""
+    return dataclasses.replace(view, width=max((view.width - GAP) // 2, 1))
+
+
 def pair(
     view: View, left: Callable[[View], Picture], right: Callable[[View], Picture]
 ) -> Picture:
@@ -160,10 +165,11 @@ def pair(
     width, height = view.width, view.height
     if camera is not None:
         width, height = camera.width, camera.height
-    half = max((width - GAP) // 2, 1)
+    narrow = halved(dataclasses.replace(view, width=width, height=height))
+    half = narrow.width
     if camera is not None:
         camera = dataclasses.replace(camera, width=half)
-    narrow = dataclasses.replace(view, width=half, height=height, camera=camera)
+        narrow = dataclasses.replace(narrow, camera=camera)
     panels = [left(narrow), right(narrow)]
     light = np.ones((height, width, 3))
     light[:, :half] = panels[0].linear

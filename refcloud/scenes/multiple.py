@@ -7,6 +7,7 @@ solved along lattice directions, and the cloud is as white as clouds are.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import time
 from dataclasses import dataclass
 from functools import partial
@@ -17,7 +18,7 @@ import numpy as np
 from refcloud.camera import Camera
 from refcloud.checking import check_fields
 from refcloud.choices import AMBIENT
-from refcloud.cloudmap import generate
+from refcloud.cloudmap import VoxelGrid, generate
 from refcloud.conventions import WHOLE_SPHERE, Positive, Range, Seed, Vector
 from refcloud.declared import Kind, enter_kind
 from refcloud.image import Picture
@@ -25,7 +26,7 @@ from refcloud.march.quadrature import grid_through_the_middle
 from refcloud.march_picture import draw_march
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
-from refcloud.scene import Model, Motion, View
+from refcloud.scene import Model, Motion, Own, View
 from refcloud.scenes import cumulus
 from refcloud.sky import Sky
 
@@ -76,24 +77,50 @@ OWN = Multiple(
 )
 
 
+def fineness(width: int) -> float:
+    """Give the edge of a voxel for a picture so many pixels wide."""
+    return float(np.clip(FINENESS / width, FINEST, COARSEST))
+
+
+@functools.lru_cache(maxsize=1)
+def cloud(seed: int, voxel: float) -> VoxelGrid:
+    """Make the cloud once for its medium and its picture."""
+    return generate(seed=seed, voxel=voxel)
+
+
+def brings(of: Multiple, model: Model | None, view: View) -> Own:
+    """Give the sun, and the medium that makes the cloud's middle so thick."""
+    scattering = view.scattering or "multiple"
+    medium = Medium(1.0, g=of.g, phase="hg")
+    if model is None:
+        return Own((of.sun,), medium, scattering=scattering, open=("sigma_t",))
+    if view.medium is None:
+        grid = cloud(of.seed, fineness(view.width))
+        sigma_t = of.thickness / grid_through_the_middle(grid)
+        medium = dataclasses.replace(medium, sigma_t=sigma_t)
+    return Own((of.sun,), medium, scattering=scattering)
+
+
 def draw(of: Multiple, model: Model, view: View) -> Picture:
     """Generate the cloud, solve its light and march it."""
     if view.look is not None:
         raise ValueError(complaint("look", "none beside marched light", "one"))
     camera = view.camera or own_eye(model, view, of=of)
     start = time.perf_counter()
-    voxel = float(np.clip(FINENESS / camera.width, FINEST, COARSEST))
-    grid = generate(seed=of.seed, voxel=voxel)
+    voxel = fineness(camera.width)
+    grid = cloud(of.seed, voxel)
     made = time.perf_counter() - start
-    sigma_t = of.thickness / grid_through_the_middle(grid)
+    own = brings(of, model, dataclasses.replace(view, width=camera.width))
+    medium = view.medium or own.medium
+    assert medium is not None
     picture = draw_march(
         grid,
         camera,
-        (of.sun,) if view.suns is None else view.suns,
+        own.suns or () if view.suns is None else view.suns,
         Sky(),
-        medium=view.medium or Medium(sigma_t, g=of.g, phase="hg"),
+        medium=medium,
         ambient=AMBIENT,
-        scattering=view.scattering or "multiple",
+        scattering=own.scattering or "multiple",
         tolerance=view.tolerance,
         observe=view.observe,
     )
@@ -122,5 +149,6 @@ enter_kind(
         draw,
         turning,
         uses=("scattering",),
+        brings=brings,
     )
 )

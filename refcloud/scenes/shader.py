@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from functools import partial
 
 from refcloud.camera import AnyCamera
@@ -24,11 +25,12 @@ from refcloud.declared import Kind, enter_kind, told
 from refcloud.image import Picture
 from refcloud.noise import fbm
 from refcloud.noise.scattered import Numbers
-from refcloud.scene import Model, Motion, View
+from refcloud.scene import Model, Motion, Own, View
 from refcloud.scenes.demand_plane import pair
 from refcloud.scenes.shader_eyes import (
     NEVER,
     blown,
+    glow_alone,
     outlook,
     precision,
 )
@@ -143,6 +145,16 @@ def plane_motion(of: PlaneSky) -> Motion:
     return Motion(plane_eye, turns=IN_PLACE, period=math.inf, repeats=NEVER)
 
 
+def eye_and_glow(
+    eye: Callable[[Model, View], AnyCamera],
+    of: object,
+    model: Model | None,
+    view: View,
+) -> Own:
+    """Take suns, as `glow_alone`, and an eye that does not move."""
+    return Own((), camera=eye(Model({}), view))
+
+
 def covers_motion(of: TwoCovers) -> Motion:
     """Blow wind; two pictures have no eye of their own."""
     return Motion(period=math.inf, repeats=NEVER)
@@ -221,6 +233,7 @@ for name, title, own, draw, motion in (
         still,
     ),
 ):
+    resting = {"cover": plane_eye, "background": upward_eye}.get(name)
     enter_kind(
         Kind(
             f"shader-{name}",
@@ -228,5 +241,6 @@ for name, title, own, draw, motion in (
             own,
             partial(told, draw),
             motion,
+            brings=partial(eye_and_glow, resting) if resting else glow_alone,
         )
     )

@@ -15,7 +15,7 @@ from refcloud.image import Picture
 from refcloud.noise.scattered import Dtype
 from refcloud.optics import Sun
 from refcloud.refusal import complaint
-from refcloud.scene import Model, View
+from refcloud.scene import Model, Own, View
 from refcloud.sky import Cover, Places, Sky, clear_sky, places
 from refcloud.sky.places import Way
 from refcloud.sky.surfaces import Surface
@@ -90,8 +90,18 @@ def blown(view: View) -> Array:
 
 
 def painted(camera: AnyCamera, view: View) -> Array:
-    """Paint the clear sky behind everything."""
+    """Paint the clear sky behind everything, with the suns that are given."""
     return clear_sky(camera, DAY, suns=() if view.suns is None else view.suns)
+
+
+def sunless(camera: AnyCamera) -> Array:
+    """Paint the clear sky of scenes whose sun, their own or given, lights alone."""
+    return clear_sky(camera, DAY)
+
+
+def glow_alone(of: object, model: Model | None, view: View) -> Own:
+    """Take suns, which shine in the sky; it has none of its own."""
+    return Own(())
 
 
 def timed(

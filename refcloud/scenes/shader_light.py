@@ -20,11 +20,11 @@ import numpy as np
 
 from refcloud.camera import AnyCamera, rays
 from refcloud.conventions import WHOLE_SPHERE, Array
-from refcloud.declared import Kind, enter_kind, told
+from refcloud.declared import Kind, enter_kind, sun_alone, told
 from refcloud.image import Picture
 from refcloud.noise import fbm
 from refcloud.optics import Sun
-from refcloud.scene import Model, Motion, View
+from refcloud.scene import Model, Motion, Own, View
 from refcloud.scenes.demand_plane import pair
 from refcloud.scenes.shader_eyes import (
     FRONT,
@@ -34,8 +34,8 @@ from refcloud.scenes.shader_eyes import (
     kept_places,
     observed,
     outlook,
-    painted,
     refuse_unused,
+    sunless,
     texels,
     timed,
 )
@@ -118,7 +118,7 @@ def lit_layer(
         _, directions = rays(camera)
         rise = directions[found.seen][:, 1]
         depth = layer.sigma_t * layer.thickness * risen**2 / 2.0 / rise
-        behind = painted(camera, view)
+        behind = sunless(camera)
         over = shaded(behind, found, lambda at: (light, -np.expm1(-depth)), fog=of.fog)
         note = f"marched to the sun: {np.count_nonzero(cloud)} pixels"
         return over, (*found.skipped, *rows), (f"{note}, {layer.steps} samples each",)
@@ -138,10 +138,20 @@ def noise_of(
     return lambda at: looked_up(texture, at / of.base.tile), rows
 
 
+def fog_eye(view: View) -> AnyCamera:
+    """Look straight ahead."""
+    return outlook(view, (0.0, 0.0, -1.0), 0.95)
+
+
+def fogs_own(of: TwoFogs, model: Model | None, view: View) -> Own:
+    """Give the sun, and the eye of both pictures."""
+    return Own((of.sun,), camera=fog_eye(view))
+
+
 def foggy(view: View, fog: Fog, of: TwoFogs = FOGS) -> Picture:
     """Draw ground, balls and sky, each in the same fog."""
     refuse_unused(view)
-    camera = outlook(view, (0.0, 0.0, -1.0), 0.95)
+    camera = fog_eye(view)
     suns = (of.sun,) if view.suns is None else view.suns
 
     def clouds(at: Places) -> tuple[Array, Array]:
@@ -159,7 +169,7 @@ def foggy(view: View, fog: Fog, of: TwoFogs = FOGS) -> Picture:
         return RED * lambert(normals, suns), np.ones(len(normals))
 
     def draw():
-        over = shaded(painted(camera, view), places(camera, of.sky), clouds, fog=fog)
+        over = shaded(sunless(camera), places(camera, of.sky), clouds, fog=fog)
         over = shaded(over, places(camera, of.ground), ground, fog=fog)
         for sphere in sorted(BALLS, key=lambda b: b.center[2]):  # the farthest first
             found = places(camera, sphere)
@@ -209,13 +219,14 @@ def fog_motion(of: TwoFogs) -> Motion:
     return Motion(suns=(of.sun,), period=math.inf, repeats=NEVER)
 
 
-for name, title, own, draw, motion in (
+for name, title, own, draw, motion, brings in (
     (
         "lit",
         "section 5.1, of appendix B: a layer lit through its thickness",
         LIT,
         lit_layer,
         lit_motion,
+        sun_alone,
     ),
     (
         "fog",
@@ -223,7 +234,9 @@ for name, title, own, draw, motion in (
         FOGS,
         both_fogs,
         fog_motion,
+        fogs_own,
     ),
 ):
     title = f"document S: {title}"
-    enter_kind(Kind(f"shader-{name}", title, own, partial(told, draw), motion))
+    drawn = partial(told, draw)
+    enter_kind(Kind(f"shader-{name}", title, own, drawn, motion, brings=brings))

@@ -17,7 +17,7 @@ import numpy as np
 
 from refcloud.camera import AnyCamera, Camera
 from refcloud.conventions import WHOLE_SPHERE, Array
-from refcloud.declared import Kind, enter_kind, told
+from refcloud.declared import Kind, enter_kind, nothing_own, sun_alone, told
 from refcloud.image import Picture, srgb_decode
 from refcloud.noise import fbm, lattice_random, wrapped_bilinear
 from refcloud.noise.kinds import KindName
@@ -35,8 +35,8 @@ from refcloud.scenes.shader_eyes import (
     FRONT,
     SUN,
     observed,
-    painted,
     refuse_unused,
+    sunless,
     timed,
 )
 from refcloud.scenes.shader_kinds import Bubble, LitPuff, NoiseBalls, Raw
@@ -166,7 +166,7 @@ def puff(model: Model, view: View, *, of: LitPuff = SMOKE) -> Picture:
 
         # 3. Over the sky.
         ahead = np.array([0.0, 0.6, -1.0])
-        over = painted(Camera(np.zeros(3), ahead, width=width, height=height), view)
+        over = sunless(Camera(np.zeros(3), ahead, width=width, height=height))
         share = -np.expm1(-of.opacity * density[rows, columns])[:, None]
         over[rows, columns] = share * light + (1.0 - share) * over[rows, columns]
         return over, (), ()
@@ -218,7 +218,7 @@ def bubble(model: Model, view: View, *, of: Bubble = BUBBLE) -> Picture:
 
     def draw():
         buffer = framebuffer(camera.width, camera.height, depth=1.0)
-        buffer.pixels[..., :3] = painted(camera, view)
+        buffer.pixels[..., :3] = sunless(camera)
         mesh = bubble_mesh(view.time, of)
         far = None if isinstance(camera, Camera) else 1e6
         draw_triangles(
@@ -272,5 +272,6 @@ for name, title, own, draw_one, motion in (
     ("e", "appendix E: a distorted sphere", BUBBLE, bubble, bubble_motion),
     ("raw", "section 3.1: raw pseudo-random numbers", NUMBERS, raw, still),
 ):
-    title = f"document S: {title}"
-    enter_kind(Kind(f"shader-{name}", title, own, partial(told, draw_one), motion))
+    title, drawn = f"document S: {title}", partial(told, draw_one)
+    brings = nothing_own if name == "raw" else sun_alone
+    enter_kind(Kind(f"shader-{name}", title, own, drawn, motion, brings=brings))

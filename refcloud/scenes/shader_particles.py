@@ -26,7 +26,7 @@ from refcloud.metaballs import Metaballs
 from refcloud.noise import uniform
 from refcloud.optics import Medium, Sun
 from refcloud.raster.footprint import patch_of
-from refcloud.scene import Model, Motion, View
+from refcloud.scene import Model, Motion, Own, View
 from refcloud.sky import Sky
 
 
@@ -187,6 +187,11 @@ def draw(of: Particles, model: Model, view: View) -> Picture:
     return dataclasses.replace(picture, notes=(*picture.notes, note))
 
 
+def brings(of: Particles, model: Model | None, view: View) -> Own:
+    """Give sun, medium and look."""
+    return Own((of.sun,), of.medium, named(view.look or "cumulus"))
+
+
 def turning(of: Particles) -> Motion:
     """Turn eye and sun; wind carries every particle away."""
     never = (np.inf, np.inf, np.inf)
@@ -202,5 +207,6 @@ enter_kind(
         turning,
         particles,
         ("seed",),
+        brings,
     )
 )

@@ -246,15 +246,17 @@ def taken(group: Group, given: Any) -> dict[str, Any] | None:
         if name not in options:
             expected = "one of " + ", ".join(options)
             raise ValueError(complaint(group.key, expected, repr(str(name)[:60])))
-    values = group.started()
+    values, start = group.started(), group.started()
     for name, value in given.items():
-        values[name] = _checked(f"{group.key}.{name}", options[name], value)
+        open_ = options[name].default is None or start[name] is None
+        where = f"{group.key}.{name}"
+        values[name] = _checked(where, options[name], value, may_be_none=open_)
     return values
 
 
-def _checked(where: str, option: Option, value: Any) -> Any:
+def _checked(where: str, option: Option, value: Any, *, may_be_none: bool) -> Any:
     kinds: tuple[Any, ...] = option.kinds
-    if option.default is None:
+    if may_be_none:
         kinds = (*kinds, None)
     if isinstance(value, list) and not any(base_of(k) is Array for k in option.kinds):
         raise TypeError(complaint(where, "one value", f"{len(value)} values"))

@@ -21,6 +21,7 @@ from refcloud.animation import Progress
 from refcloud.animation.frames import draw_frame
 from refcloud.animation.job import Job, Saving, signed
 from refcloud.animation.workers import drawn
+from refcloud.declared import KINDS
 from refcloud.image import read_png
 from refcloud.scene import View
 from refcloud.scenes import SCENES
@@ -369,3 +370,17 @@ def test_frame_is_drawn_within_strict_arithmetic() -> None:
     job = signed(Job(scene, View(16, 12), Moves(), True, 1, Saving(1.0, "none", False)))
     with np.errstate(all="ignore"), pytest.raises(FloatingPointError):
         draw_frame(job, 0)
+
+
+@pytest.mark.parametrize("look", [None, "man"])
+def test_a_sun_begins_to_turn_where_and_as_it_shines_at_rest(look) -> None:
+    """Light scattered once has another sun in this scene than solved light."""
+    of = dataclasses.replace(rc.scenes.cumulus.OWN, count=20, field=())
+    scene = KINDS["cumulus"].scene("cumulus", "", of)
+    view = View(12, 9, look=look, tolerance=0.1)
+    moves = Moves(turn_sun=40.0)
+    saving = Saving(1.0, "none", False)
+    job = signed(Job(scene, view, moves, False, 2, saving))
+    rest = scene.draw(scene.model(), view).codes(tone="none", dither=False)
+    assert np.array_equal(draw_frame(job, 0).codes, rest)
+    assert not np.array_equal(draw_frame(job, 1).codes, rest)

@@ -43,10 +43,16 @@ BAD = {
     "render flat.npz": r"density of shape \(D, H, W\)",
     # scenes
     "render cumulos": "WHAT: expected .*cumulus, .*man-04.*, got 'cumulos'",
-    "render cumulus --eye 0 0 9": "--target: expected it beside --eye",
-    "render cumulus --fov-y 1": "--eye: expected it beside --fov-y",
-    "render cumulus --g 0.5": "--sigma-t: expected it beside --g",
-    "render cumulus --irradiance 1 1 1": "--sun: expected it beside --irradiance",
+    "render cumulus --eye 1 19 0": "another place than the eye",
+    "render cumulus --g 0.5 --phase isotropic": "--g: expected none beside --phase",
+    "render cumulus --irradiance 1 1 1 --irradiance 2 2 2": "got 2",
+    "render cumulus --density 2": "--density: expected none beside a scene, got one",
+    "render cumulus --sun 0 0 0": "--sun: expected a vector that is not zero",
+    "render simple-sky --fov-y 1": "--fov-y: expected none beside simple-sky, which",
+    "render shader-a --eye 0 0 9": "--eye: expected none .*, which has no camera",
+    "render shader-c --g 0.5": "--g: expected none .*, which has no medium",
+    "render demand-quad --sun 0 1 0": "--sun: expected none .*, which has no sun",
+    "render shader-c --irradiance 1 1 1": "--sun: expected it .*; shader-c has no sun",
     "render cumulus --background sky": "background: expected none beside a scene",
     "render cumulus --width 1000000 --height 1000000": "at most 8.3 megapixels",
     "render man-14 --width 20000 --height 3000": "megapixels .*, got 20000 x 3000",
@@ -69,6 +75,11 @@ BAD = {
     "animate balls.npz --frames 2 --turn-eye 9 --background transparent -o a.gif": (
         "--output: expected an opaque background in .gif"
     ),
+    # options given twice
+    "generate --voxel 5 --voxel 4": "--voxel: expected it once, got it twice; leave",
+    "generate -o x.npz -o y.npz": "--output: expected it once, got it twice",
+    "generate -ox.npz --output=y.npz": "--output: expected it once, got it twice",
+    f"{RENDER} --dither --no-dither": "--dither: expected it once, got it twice",
     # values
     "generate --octaves 0": r"--octaves: expected a whole number in \[1, 32\], got 0",
     "generate --octaves 2.5": "whole number in .*, got '2.5'",

@@ -258,7 +258,7 @@ def test_a_cloud_map_is_marched(cloud, run, small) -> None:
     assert np.abs(difference).max() < 0.02
     refused = run("render", "man-10", "--density", 2)
     assert refused.status == 2
-    assert "--sigma-t: expected it beside --density" in refused.err
+    assert "--density: expected none beside a scene" in refused.err
 
 
 def test_linear_light_may_be_written(run, small) -> None:

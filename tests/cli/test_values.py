@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import values_for
 
-from refcloud.cli import approximate, compare, generate, render
+from refcloud.cli import animate, approximate, compare, generate, render
 from refcloud.cli.options import Option, base_of
 from refcloud.cli.parser import Command
 from refcloud.cli.setting import CAMERA, MEDIUM, SUN
@@ -104,3 +104,31 @@ def test_switches(words: list[str], value: bool) -> None:
     option = next(option for option in OPTIONS if option.is_switch)
     given = command_with(option).parse([*words, "it"])
     assert given.options == {"--dither": value}
+
+
+@pytest.mark.parametrize("command", [render.command, animate.command, generate.command])
+def test_options_come_once_unless_they_may_be_repeated(command) -> None:
+    """Whatever is typed between, and whichever way each of the two is written."""
+    made = command()
+    arguments = ["WHAT"] if made._arguments else []
+    for option in made._options.values():
+        if option.is_switch:
+            once, twice = [option.flag], [[option.flag], ["--no-" + option.flag[2:]]]
+        else:
+            value = typed_value(option)
+            once = [option.flag, *value]
+            twice = [once, [f"{option.flag}={' '.join(value)}"]]
+        for again in twice:
+            words = [*once, *arguments, *again]
+            if option.repeated:
+                assert len(made.parse(words).options[option.flag]) == 2
+                continue
+            with pytest.raises(ValueError, match=f"^{option.flag}: expected it once"):
+                made.parse(words)
+
+
+def typed_value(option: Option) -> list[str]:
+    """Give words that an option takes."""
+    if option.choices:
+        return [option.choices[0]]
+    return ["0.5"] * option.least_words

@@ -25,6 +25,7 @@ from refcloud.declared import (
     scene_from,
 )
 from refcloud.declared.reading import checked_table
+from refcloud.parameters import parameter_texts
 from refcloud.scenes import SCENES, View
 from refcloud.scenes.as_files import FILES
 
@@ -234,3 +235,31 @@ def test_no_file_and_no_file_s_kind_are_refused(tmp_path: Path) -> None:
 
 def test_a_table_is_checked_by_annotations() -> None:
     assert checked_table("medium", {"g": 0}, rc.Medium) == {"g": 0.0}
+
+
+@pytest.mark.parametrize("name", sorted(KINDS))
+def test_a_kind_s_file_says_what_each_parameter_is(name: str, tmp_path: Path) -> None:
+    """The comment above a parameter, or above those that share it, is its text."""
+    lines = save_scene(tmp_path / "a.toml", FILES[name]).read_text("utf-8").split("\n")
+    assert all(len(line) <= 88 for line in lines if line.startswith("#"))
+    texts = parameter_texts(type(KINDS[name].own))
+    for key, text in texts.items():
+        heads = f"{key} = ", f"[parameters.{key}]", f"[[parameters.{key}]]"
+        places = [k for k, line in enumerate(lines) if line.startswith(heads)]
+        if not places:
+            continue  # left to its default, or a row of none
+        above: list[str] = []
+        for line in reversed(lines[: places[0]]):
+            if line.startswith("#"):
+                above.insert(0, line[2:])
+            elif above or line.startswith("[") or not line:
+                break
+        assert " ".join(" ".join(above).split()) == " ".join(text.split()), key
+
+
+def test_the_file_of_cumulus_says_when_its_single_sun_counts(tmp_path: Path) -> None:
+    text = save_scene(tmp_path / "a.toml", FILES["cumulus"]).read_text("utf-8")
+    for part in ("single_sun", "single_medium"):
+        comment = text[: text.index(f"[parameters.{part}]")].rpartition("\n\n")[2]
+        assert "# In the place of sun and medium where light is scattered" in comment
+        assert "--scattering\n# single" in comment
