@@ -152,10 +152,10 @@ def render(
     if isinstance(suns, Sun):
         suns = (suns,)
     width, height = size_of(width, height, quality, camera)
-    passes_of(backend)  # refuses here, before the clouds are made
     if isinstance(cloud, (Scene, str)):
         scene = find_scene(cloud) if isinstance(cloud, str) else cloud
         refuse_large(width, height)  # before the clouds are made
+        passes_of(backend)  # refuses a missing one, likewise
         refuse_beside(
             "a scene's name, which brings its own",
             background=background,
@@ -208,6 +208,7 @@ def render(
         mixing=mixing,
         volumes=volumes or None,
     )
+    passes_of(backend)  # refuses a missing one before any work
     scattering = "single" if scattering is None else scattering
     if not isinstance(scattering, str):
         suns, medium = brought_by(scattering, suns, medium)

@@ -67,7 +67,8 @@ def test_a_figure_has_a_line_for_each_contender(tmp_path) -> None:
     ]
     path = plot(APPROXIMATE, rows, tmp_path / "figure.png")
     linear = load_picture(path).linear
-    assert linear.shape == (480 + 24, 640, 3)  # two lines of the legend
+    # Two lines of the legend, and one free above them.
+    assert linear.shape == (480 + 3 * 13, 640, 3)
     assert len(np.unique(linear.reshape(-1, 3), axis=0)) > 10
     with pytest.raises(ValueError, match="approximate: expected rows with an error"):
         plot(APPROXIMATE, rows[4:], tmp_path / "none.png")
