@@ -63,7 +63,7 @@ def test_the_rows_of_the_report_are_as_a_picture_writes_them() -> None:
     part = README.split("## What the report says")[1].split("\n## ")[0]
     form = r"(\w+): (\d+) of (\d+) (.+) skipped, error at most ([\d.]+)"
     rows = re.findall(rf"^{form}(?: \((.+), (proved)\))?$", part, re.M)
-    assert len(rows) == 3
+    assert len(rows) == 4
     for stage, skipped, of, what, bound, unit, how in rows:
         row = Skipped(stage, what, int(skipped), int(of), float(bound), unit, how)
         assert str(row) in part.splitlines()
