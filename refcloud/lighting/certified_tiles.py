@@ -82,8 +82,10 @@ def certified_tiles(
     # It pays where most balls' opacities keep enough digits.
     if any(2 * np.count_nonzero(balls) > len(balls) for balls in direct):
         return exact_tiles(lists, flat, least), []
-    work = _Work(lists, flat, direct, least, behind)
     room = most - share  # for fewer places than pixels
+    # Places between others may enlarge what the front hides at these.
+    seen = least / between.ONE_SIDED if room > 0.0 else least
+    work = _Work(lists, flat, direct, seen, behind)
     used = 0.0
     if room > 0.0:
         # 1. Tiles of very wide balls at nodes; of wide ones at every second pixel.
@@ -157,7 +159,7 @@ class _Work:
         tried = np.flatnonzero(wide & (self.lists.count > FEW))
         if not len(tried):
             return 0.0
-        found = self.tiles.at(level.places, self.least, tried)
+        found = self.tiles.at(level.places, self.least / level.one_sided, tried)
         error = self._of_picture(
             level.error_of(found.light), level.error_of(found.clear)
         )

@@ -37,6 +37,9 @@ TOGETHER = 96  # tiles at a time: they stay in the cache, and products are small
 # Of a sample's error, what pixels of the tile beside it take over at most: the weights
 # of all samples outside sum to 1.451 at a corner.
 HANDED_ON = 1.46
+# What an opaque front hides makes errors of one sign: from 0 to 1 at all samples, they
+# make at most this at a pixel, (306^2 + 50^2) / 256^2 rounded up.
+ONE_SIDED = 1.467
 # A ball's opacity rises within radius / sqrt(tau) from its rim, or within its radius.
 # Where that is less than this many steps, the samples could miss what the pixels show.
 LEAST_RISE = 3.0

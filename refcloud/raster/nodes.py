@@ -52,6 +52,13 @@ class Nodes:
         """Give the mean distance between nodes, pixels."""
         return SIDE / self.n
 
+    @property
+    def one_sided(self) -> float:
+        """Give the most that errors from 0 to 1 at all nodes make at a pixel."""
+        more = np.maximum(self.spread, 0.0).sum(axis=0).max()
+        less = np.minimum(self.spread, 0.0).sum(axis=0).min()
+        return float(max(more, -less))
+
     def error_of(self, values: Floats) -> Floats:
         """Estimate how far pixels made of these nodes are off.
 

@@ -12,6 +12,7 @@ from refcloud.raster.between import (
     FROM_ROW,
     HANDED_ON,
     LEAST_RISE,
+    ONE_SIDED,
     PER_FOURTH,
     STEP,
     TOGETHER,
@@ -91,6 +92,14 @@ def test_what_samples_beside_a_tile_hand_on() -> None:
     inside = np.abs(FROM_ROW[own]).sum(axis=0)
     outside = np.outer(across, across) - np.outer(inside, inside)
     assert 1.4 < outside.max() <= HANDED_ON
+
+
+def test_what_errors_of_one_sign_make_between_samples() -> None:
+    # The worst errors from 0 to 1 are 1 where the pixel's weight is positive.
+    weights = np.einsum("ij,kl->jlik", FROM_ROW, FROM_ROW)
+    worst = np.maximum(weights, 0.0).sum(axis=(2, 3)).max()
+    least = np.minimum(weights, 0.0).sum(axis=(2, 3)).min()
+    assert 0.999 * ONE_SIDED < max(worst, -least) <= ONE_SIDED
 
 
 @settings(max_examples=30)

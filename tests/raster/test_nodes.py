@@ -36,6 +36,17 @@ def test_no_pixel_lies_beyond_the_nodes(n: int) -> None:
     assert x.max() == y.max() > SIDE / 2 - 0.5
 
 
+@pytest.mark.parametrize("n", COUNTS)
+def test_what_errors_of_one_sign_make_at_pixels(n: int) -> None:
+    level = nodes(n)
+    # The worst errors from 0 to 1 are 1 where the pixel's weight is positive.
+    for sign in (1.0, -1.0):
+        errors = (sign * level.spread.T > 0.0).astype(float)[:, None]
+        made = np.abs(np.diagonal(level.at_pixels(errors)[:, 0])).max()
+        assert made <= level.one_sided * (1.0 + 1e-12)
+        assert sign < 0.0 or made > 0.999 * level.one_sided > 1.0
+
+
 @settings(max_examples=20)
 @given(
     st.integers(0, 2**63 - 1),
