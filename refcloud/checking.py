@@ -7,7 +7,6 @@ shapes and never prints an array's contents.
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import functools
 import inspect
 import math
@@ -16,13 +15,14 @@ import operator
 import os
 import types
 import typing
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
 
-from refcloud.conventions import Array, MayBeNotFinite, Range, Shape
+from refcloud.conventions import Array, MayBeNotFinite, Observer, Range, Shape
+from refcloud.frozen import only_looking, settled
 from refcloud.paths import refuse_path
 from refcloud.refusal import (
     advice,
@@ -31,6 +31,7 @@ from refcloud.refusal import (
     digits,
     kind_name,
     loading,
+    meant,
     unit_of,
 )
 
@@ -55,7 +56,8 @@ def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None)
 
     Returns
     -------
-    The value: numbers as int or float, arrays as read-only float64 views.
+    The value: numbers as int or float, arrays as read-only float64 views; an observer
+    will be shown arrays that it cannot write into.
 
     Raises
     ------
@@ -95,7 +97,7 @@ def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None)
         raise TypeError(
             complaint(name, kind_name(kind), describe(value), loading(value))
         )
-    return value
+    return only_looking(value) if hint == Observer else value
 
 
 def _check_annotated(
@@ -255,7 +257,7 @@ def checked(function: Callable[P, Result]) -> Callable[P, Result]:
         try:
             bound = signature.bind(*args, **kwargs)
         except TypeError as error:
-            near = _meant(kwargs, list(signature.parameters))
+            near = meant(kwargs, list(signature.parameters))
             raise TypeError(f"{function.__name__}: {error}{near}") from None
         sizes: dict[str, int] = {}
         for name, value in bound.arguments.items():
@@ -267,20 +269,15 @@ def checked(function: Callable[P, Result]) -> Callable[P, Result]:
     return wrapper
 
 
-def _meant(given: Iterable[str], known: list[str]) -> str:
-    """Name the parameter that an unknown one is spelled like."""
-    unknown = [name for name in given if name not in known]
-    near = difflib.get_close_matches(unknown[0], known, 1) if unknown else []
-    return f"; did you mean {near[0]}?" if near else ""
-
-
-def check_fields(instance: Any) -> None:
+def check_fields(instance: Any, *, own: bool = False) -> None:
     """Check and convert the fields of a frozen dataclass, in ``__post_init__``.
 
     Parameters
     ----------
     instance
         A frozen dataclass whose fields are annotated.
+    own
+        Whether its arrays are its own: no later write of the caller's shows.
 
     Raises
     ------
@@ -290,7 +287,8 @@ def check_fields(instance: Any) -> None:
     hints = typing.get_type_hints(type(instance), include_extras=True)
     sizes: dict[str, int] = {}
     for field in dataclasses.fields(instance):
-        value = check(
-            field.name, getattr(instance, field.name), hints[field.name], sizes
-        )
+        given = getattr(instance, field.name)
+        value = check(field.name, given, hints[field.name], sizes)
+        if own and isinstance(value, np.ndarray):
+            value = settled(given, value)
         object.__setattr__(instance, field.name, value)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -76,6 +77,13 @@ def kind_name(kind: Any) -> str:
     return {"str": "a text", "bool": "True or False", "Callable": "a function"}.get(
         name, f"a {name}"
     )
+
+
+def meant(given: Iterable[str], known: list[str]) -> str:
+    """Name the parameter that an unknown one is spelled like."""
+    unknown = [name for name in given if name not in known]
+    near = difflib.get_close_matches(unknown[0], known, 1) if unknown else []
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 def loading(value: Any) -> str:

@@ -15,7 +15,7 @@ LONGEST_FILE = 300
 # From the ground up. A file imports from lower floors and from its own room only.
 FLOORS = (
     ("conventions", "references", "products"),
-    ("refusal",),
+    ("refusal", "frozen"),
     ("paths",),
     ("checking", "extremes"),
     ("files", "parameters", "processes"),
