@@ -13,6 +13,7 @@ import math
 import numbers
 import operator
 import os
+import re
 import types
 import typing
 from collections.abc import Callable
@@ -201,8 +202,12 @@ def _check_union(
             return check(name, value, member, sizes)
         except (TypeError, ValueError) as refusal:
             refusals.append(refusal)
-    if len(refusals) == 1:
-        raise refusals[0]
+    # An array of the right shape is refused for its numbers: no other kind was meant.
+    numbers = [
+        r for r in refusals if re.search(r": expected (finite )?numbers", str(r))
+    ]
+    if len(refusals) == 1 or numbers:
+        raise (numbers or refusals)[0]
     # Name everything that would have done; ValueError where one of the kinds was right.
     marks = [str(r).split(": expected ", 1)[1].split(", got ")[0] for r in refusals]
     got = str(refusals[0]).split(", got ", 1)[1].split("; ")[0]

@@ -114,6 +114,8 @@ WHOLE_SPHERE = 4.0 * math.pi  # steradians
 # most 300 bytes a pixel (measured: shader-lit; other scenes take 160 to 260), so that
 # the largest, of 3840 x 2160, takes 2.5 GB; larger ones are refused.
 MOST_PIXELS = 8_300_000
+# Width and height where the caller names none.
+SIZES: dict[str, tuple[int, int]] = {"quick": (320, 240), "final": (1024, 768)}
 
 Positive = Range(0.0, open_lower=True)
 Seed = Annotated[int, Range(-(2**63), 2**63 - 1)]

@@ -232,3 +232,11 @@ def test_no_observer_can_write_into_what_it_sees(cloud, name: str) -> None:
     watched = drawn(name, cloud, look)
     np.testing.assert_array_equal(watched, drawn(name, cloud, None))
     assert sum(seen) or name == "billows", "something was shown"
+
+
+def test_clouds_compare_by_identity() -> None:
+    """Arrays have no truth value: a comparison of them would be an error."""
+    balls = [Metaballs(np.zeros((2, 3)), np.ones(2), np.ones(2)) for _ in range(2)]
+    grids = [small(fresh()) for _ in range(2)]
+    for a, b in (balls, grids):
+        assert (a == a, a == b, a in [b], len({a, b})) == (True, False, False, 2)
