@@ -118,6 +118,7 @@ MOST_PIXELS = 8_300_000
 SIZES: dict[str, tuple[int, int]] = {"quick": (320, 240), "final": (1024, 768)}
 
 Positive = Range(0.0, open_lower=True)
+UNIT = Range(-1.000001, 1.000001)  # parts of unit vectors, float32 ones among them
 Seed = Annotated[int, Range(-(2**63), 2**63 - 1)]
 Vector = Annotated[Array, Shape(3)]
 Colour = Annotated[Array, Shape(3), Range(0.0, unit="radiance")]
