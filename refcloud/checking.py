@@ -27,6 +27,7 @@ from refcloud.frozen import only_looking, settled
 from refcloud.paths import refuse_path
 from refcloud.refusal import (
     advice,
+    all_of,
     complaint,
     describe,
     digits,
@@ -35,6 +36,7 @@ from refcloud.refusal import (
     meant,
     unit_of,
 )
+from refcloud.shapes import elementwise, refuse_unlike
 
 P = ParamSpec("P")
 Result = TypeVar("Result")
@@ -208,14 +210,7 @@ def _check_union(
     ]
     if len(refusals) == 1 or numbers:
         raise (numbers or refusals)[0]
-    # Name everything that would have done; ValueError where one of the kinds was right.
-    marks = [str(r).split(": expected ", 1)[1].split(", got ")[0] for r in refusals]
-    got = str(refusals[0]).split(", got ", 1)[1].split("; ")[0]
-    right = [r for r in refusals if isinstance(r, ValueError)]
-    if right:
-        got = str(right[0]).split(", got ", 1)[1].split("; ")[0]
-    kind = ValueError if right else TypeError
-    raise kind(complaint(name, " or ".join(dict.fromkeys(marks)), got, loading(value)))
+    raise all_of(name, refusals, value)
 
 
 def _is_path(hint: Any) -> bool:
@@ -254,11 +249,13 @@ def checked(function: Callable[P, Result]) -> Callable[P, Result]:
     """
     signature = inspect.signature(function)
     hints: dict[str, Any] = {}
+    own: dict[str, int] = {}
 
     @functools.wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> Result:
         if not hints:
             hints.update(typing.get_type_hints(function, include_extras=True))
+            own.update(elementwise(hints))
         try:
             bound = signature.bind(*args, **kwargs)
         except TypeError as error:
@@ -269,6 +266,7 @@ def checked(function: Callable[P, Result]) -> Callable[P, Result]:
             kind = signature.parameters[name].kind
             if name in hints and kind is not inspect.Parameter.VAR_KEYWORD:
                 bound.arguments[name] = check(name, value, hints[name], sizes)
+        refuse_unlike(bound.arguments, own)
         return function(*bound.args, **bound.kwargs)
 
     return wrapper

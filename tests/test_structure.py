@@ -16,7 +16,7 @@ LONGEST_FILE = 300
 FLOORS = (
     ("conventions", "references", "products"),
     ("refusal", "frozen"),
-    ("paths",),
+    ("paths", "shapes"),
     ("checking", "extremes"),
     ("files", "parameters", "processes"),
     ("noise", "optics", "camera", "image"),
