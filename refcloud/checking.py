@@ -40,6 +40,7 @@ from refcloud.shapes import elementwise, refuse_unlike
 
 P = ParamSpec("P")
 Result = TypeVar("Result")
+FEW = 16  # numbers of vectors, colours and matrices: a copy takes no time worth saving
 
 
 def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None) -> Any:
@@ -280,7 +281,8 @@ def check_fields(instance: Any, *, own: bool = False) -> None:
     instance
         A frozen dataclass whose fields are annotated.
     own
-        Whether its arrays are its own: no later write of the caller's shows.
+        Whether its arrays are its own: no later write of the caller's shows. Those of
+        a few numbers always are.
 
     Raises
     ------
@@ -292,6 +294,6 @@ def check_fields(instance: Any, *, own: bool = False) -> None:
     for field in dataclasses.fields(instance):
         given = getattr(instance, field.name)
         value = check(field.name, given, hints[field.name], sizes)
-        if own and isinstance(value, np.ndarray):
+        if isinstance(value, np.ndarray) and (own or value.size <= FEW):
             value = settled(given, value)
         object.__setattr__(instance, field.name, value)

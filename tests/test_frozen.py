@@ -78,6 +78,18 @@ def test_balls_and_corners_are_copied_too() -> None:
     assert not grid.lower.any()
 
 
+def test_vectors_and_colours_are_copied_everywhere() -> None:
+    vector, colour = np.array([0.0, 1.0, 0.0]), np.full(3, 0.5)
+    sun, medium = rc.Sun(vector, colour), rc.Medium(colour, colour)
+    eye = rc.Camera(vector, [9.0, 9.0, 9.0], width=8, height=8)
+    look = Look(sky_light=colour)
+    vector[...] = 7.0
+    colour[...] = 7.0
+    for part in (sun.irradiance, medium.sigma_t, medium.albedo, look.sky_light):
+        assert (np.asarray(part) == 0.5).all()
+    assert eye.eye.tolist() == sun.direction.tolist() == [0.0, 1.0, 0.0]
+
+
 def test_what_nobody_can_write_into_is_not_copied() -> None:
     density = sealed(fresh())
     grid = small(density)
@@ -212,7 +224,9 @@ def drawn(name: str, cloud: VoxelGrid, observe: Any) -> Any:
                 cloud, tolerance=1 / 255, width=64, height=40, observe=observe
             ).linear
         ),
-        "multiple": lambda: rc.render(cloud, scattering="multiple", **how).linear,
+        "multiple": lambda: (
+            rc.render(small(fresh()), scattering="multiple", **how).linear
+        ),
     }[name]()
 
 
