@@ -47,8 +47,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Observer = Callable[[str, Any], Any]  # gets a name and an intermediate, read-only
-    [str, Any], Any
-]  # called with a name and each intermediate, read-only
 
 
 @dataclass(frozen=True)
