@@ -7,35 +7,40 @@ shapes and never prints an array's contents.
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import functools
 import inspect
 import math
 import numbers
 import operator
 import os
+import re
 import types
 import typing
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
 
-from refcloud.conventions import Array, MayBeNotFinite, Range, Shape
+from refcloud.conventions import Array, MayBeNotFinite, Observer, Range, Shape
+from refcloud.frozen import only_looking, settled
 from refcloud.paths import refuse_path
 from refcloud.refusal import (
     advice,
+    all_of,
     complaint,
     describe,
     digits,
     kind_name,
     loading,
+    meant,
     unit_of,
 )
+from refcloud.shapes import elementwise, refuse_unlike
 
 P = ParamSpec("P")
 Result = TypeVar("Result")
+FEW = 16  # numbers of vectors, colours and matrices: a copy takes no time worth saving
 
 
 def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None) -> Any:
@@ -55,7 +60,8 @@ def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None)
 
     Returns
     -------
-    The value: numbers as int or float, arrays as read-only float64 views.
+    The value: numbers as int or float, arrays as read-only float64 views; an observer
+    will be shown arrays that it cannot write into.
 
     Raises
     ------
@@ -95,7 +101,7 @@ def check(name: str, value: Any, hint: Any, sizes: dict[str, int] | None = None)
         raise TypeError(
             complaint(name, kind_name(kind), describe(value), loading(value))
         )
-    return value
+    return only_looking(value) if hint == Observer else value
 
 
 def _check_annotated(
@@ -199,16 +205,13 @@ def _check_union(
             return check(name, value, member, sizes)
         except (TypeError, ValueError) as refusal:
             refusals.append(refusal)
-    if len(refusals) == 1:
-        raise refusals[0]
-    # Name everything that would have done; ValueError where one of the kinds was right.
-    marks = [str(r).split(": expected ", 1)[1].split(", got ")[0] for r in refusals]
-    got = str(refusals[0]).split(", got ", 1)[1].split("; ")[0]
-    right = [r for r in refusals if isinstance(r, ValueError)]
-    if right:
-        got = str(right[0]).split(", got ", 1)[1].split("; ")[0]
-    kind = ValueError if right else TypeError
-    raise kind(complaint(name, " or ".join(dict.fromkeys(marks)), got, loading(value)))
+    # An array of the right shape is refused for its numbers: no other kind was meant.
+    numbers = [
+        r for r in refusals if re.search(r": expected (finite )?numbers", str(r))
+    ]
+    if len(refusals) == 1 or numbers:
+        raise (numbers or refusals)[0]
+    raise all_of(name, refusals, value)
 
 
 def _is_path(hint: Any) -> bool:
@@ -247,40 +250,39 @@ def checked(function: Callable[P, Result]) -> Callable[P, Result]:
     """
     signature = inspect.signature(function)
     hints: dict[str, Any] = {}
+    own: dict[str, int] = {}
 
     @functools.wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> Result:
         if not hints:
             hints.update(typing.get_type_hints(function, include_extras=True))
+            own.update(elementwise(hints))
         try:
             bound = signature.bind(*args, **kwargs)
         except TypeError as error:
-            near = _meant(kwargs, list(signature.parameters))
+            near = meant(kwargs, list(signature.parameters))
             raise TypeError(f"{function.__name__}: {error}{near}") from None
         sizes: dict[str, int] = {}
         for name, value in bound.arguments.items():
             kind = signature.parameters[name].kind
             if name in hints and kind is not inspect.Parameter.VAR_KEYWORD:
                 bound.arguments[name] = check(name, value, hints[name], sizes)
+        refuse_unlike(bound.arguments, own)
         return function(*bound.args, **bound.kwargs)
 
     return wrapper
 
 
-def _meant(given: Iterable[str], known: list[str]) -> str:
-    """Name the parameter that an unknown one is spelled like."""
-    unknown = [name for name in given if name not in known]
-    near = difflib.get_close_matches(unknown[0], known, 1) if unknown else []
-    return f"; did you mean {near[0]}?" if near else ""
-
-
-def check_fields(instance: Any) -> None:
+def check_fields(instance: Any, *, own: bool = False) -> None:
     """Check and convert the fields of a frozen dataclass, in ``__post_init__``.
 
     Parameters
     ----------
     instance
         A frozen dataclass whose fields are annotated.
+    own
+        Whether its arrays are its own: no later write of the caller's shows. Those of
+        a few numbers always are.
 
     Raises
     ------
@@ -290,7 +292,8 @@ def check_fields(instance: Any) -> None:
     hints = typing.get_type_hints(type(instance), include_extras=True)
     sizes: dict[str, int] = {}
     for field in dataclasses.fields(instance):
-        value = check(
-            field.name, getattr(instance, field.name), hints[field.name], sizes
-        )
+        given = getattr(instance, field.name)
+        value = check(field.name, given, hints[field.name], sizes)
+        if isinstance(value, np.ndarray) and (own or value.size <= FEW):
+            value = settled(given, value)
         object.__setattr__(instance, field.name, value)

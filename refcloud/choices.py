@@ -9,7 +9,7 @@ import numpy as np
 
 from refcloud.camera import AnyCamera, Camera, frame
 from refcloud.cloudmap import VoxelGrid, cell_size
-from refcloud.conventions import WHOLE_SPHERE
+from refcloud.conventions import SIZES, WHOLE_SPHERE
 from refcloud.lighting import Look
 from refcloud.lighting.depths import through_the_middle
 from refcloud.march.quadrature import grid_through_the_middle
@@ -17,8 +17,6 @@ from refcloud.metaballs import Metaballs
 from refcloud.optics import ALBEDO_MAN2003, Medium, Sun
 from refcloud.refusal import complaint
 
-# Width and height where the caller names none.
-SIZES: dict[str, tuple[int, int]] = {"quick": (320, 240), "final": (1024, 768)}
 # Optical depth through a cloud's middle where the caller names no medium: a cumulus of
 # this thickness lets almost nothing through its middle and still has soft edges.
 THICKNESS = 40.0

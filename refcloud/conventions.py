@@ -46,7 +46,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Observer = Callable[[str, Any], Any]  # called with a name and each intermediate
+Observer = Callable[[str, Any], Any]  # gets a name and an intermediate, read-only
 
 
 @dataclass(frozen=True)
@@ -114,8 +114,11 @@ WHOLE_SPHERE = 4.0 * math.pi  # steradians
 # most 300 bytes a pixel (measured: shader-lit; other scenes take 160 to 260), so that
 # the largest, of 3840 x 2160, takes 2.5 GB; larger ones are refused.
 MOST_PIXELS = 8_300_000
+# Width and height where the caller names none.
+SIZES: dict[str, tuple[int, int]] = {"quick": (320, 240), "final": (1024, 768)}
 
 Positive = Range(0.0, open_lower=True)
+UNIT = Range(-1.000001, 1.000001)  # parts of unit vectors, float32 ones among them
 Seed = Annotated[int, Range(-(2**63), 2**63 - 1)]
 Vector = Annotated[Array, Shape(3)]
 Colour = Annotated[Array, Shape(3), Range(0.0, unit="radiance")]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -76,6 +77,25 @@ def kind_name(kind: Any) -> str:
     return {"str": "a text", "bool": "True or False", "Callable": "a function"}.get(
         name, f"a {name}"
     )
+
+
+def all_of(name: str, refusals: list[Exception], value: Any) -> Exception:
+    """Join refusals of one value, of which any kind would have done, to one.
+
+    It names all that would have done, and is a ValueError where one kind was right.
+    """
+    expected = [str(r).split(": expected ", 1)[1].split(", got ")[0] for r in refusals]
+    right = [r for r in refusals if isinstance(r, ValueError)]
+    got = str((right or refusals)[0]).split(", got ", 1)[1].split("; ")[0]
+    text = complaint(name, " or ".join(dict.fromkeys(expected)), got, loading(value))
+    return ValueError(text) if right else TypeError(text)
+
+
+def meant(given: Iterable[str], known: list[str]) -> str:
+    """Name the parameter that an unknown one is spelled like."""
+    unknown = [name for name in given if name not in known]
+    near = difflib.get_close_matches(unknown[0], known, 1) if unknown else []
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 def loading(value: Any) -> str:

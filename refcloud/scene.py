@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from refcloud.camera import AnyCamera
-from refcloud.checking import complaint
-from refcloud.conventions import Array, Backend, Observer, Skipped
+from refcloud.checking import checked, complaint
+from refcloud.conventions import SIZES, Array, Backend, Observer, Skipped
 from refcloud.image import Picture
 from refcloud.lighting import Look
 from refcloud.lighting.look import LookName
@@ -153,13 +153,19 @@ def enter(scene: Scene) -> Scene:
     return scene
 
 
-def own_of(scene: Scene, view: View, model: Model | None = None) -> Own:
+@checked
+def own_of(
+    scene: Scene | str, view: View | None = None, model: Model | None = None
+) -> Own:
     """Give what a scene is drawn with, as far as it can be told.
 
     Parameters
     ----------
-    scene, view
-        Which, and what of it is chosen: parts that are not None count as they are.
+    scene
+        Which, or its name.
+    view
+        What of it is chosen: parts that are not None count as they are. None is a view
+        of the size that `render` gives a picture, with nothing chosen.
     model
         Its clouds; None while they are not made.
 
@@ -167,14 +173,23 @@ def own_of(scene: Scene, view: View, model: Model | None = None) -> Own:
     -------
     The scene's own camera, suns, medium and look; nothing where it does not say.
 
+    Raises
+    ------
+    ValueError
+        No scene has that name.
+
+    Source: project, W03.
+
     Examples
     --------
     >>> import refcloud as rc
-    >>> own = own_of(find_scene("cumulus"), View(320, 240))
+    >>> own = own_of("cumulus")
     >>> denser = replace(own.medium, sigma_t=3.0)  # for rc.render("cumulus", medium=...
     >>> denser.albedo
     0.97
     """
+    scene = find_scene(scene) if isinstance(scene, str) else scene
+    view = View(*SIZES["final"]) if view is None else view
     if scene.brings is None:
         return Own()
     bare = replace(view, camera=None)  # the scene's own eye, not the view's

@@ -35,6 +35,7 @@ from refcloud.conventions import (
 SHARE = Annotated[float, Range(0.0, 1.0)]
 COUNT = Annotated[int, Range(1, 9, "balls")]
 POINTS = Annotated[Array, Shape("N", 3)]
+LIGHT = Annotated[Array, Shape("N", 3), Range(0.0)]
 MARK = 123456.789  # stands in the arrays: no refusal may print it
 
 
@@ -115,6 +116,8 @@ def refusal(value: Any, hint: Any, error: Errors = ValueError) -> str:
         ("a", SHARE | None, TypeError, "expected a finite number in [0, 1], got 'a'"),
         (2, SHARE | str, ValueError, "in [0, 1] or a text, got 2"),
         ([1], SHARE | str, TypeError, "got a list"),
+        ([1, math.nan, 2], Colour | POINTS, ValueError, "got 1 NaN or infinite of 3"),
+        ([[1, -7.0, 2]], str | Vector | LIGHT, ValueError, "numbers in [0, inf)"),
     ],
     ids=lambda value: str(value)[:30],
 )

@@ -101,3 +101,10 @@ def test_the_examples_run(
         "beer.png",
     }
     assert "medium: sigma_t" in capsys.readouterr().out
+
+
+def test_the_call_that_names_a_scene_s_parts_works() -> None:
+    (call,) = re.findall(r"`(rc\.scenes\.own_of\(.*?\))`", README)
+    own = eval(call, {"rc": refcloud})
+    assert own.medium is not None
+    assert None not in (own.suns, own.look, own.camera)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import refcloud as rc
+from refcloud.conventions import SIZES
 from refcloud.declared import KINDS, Cloud, Declaration, scene_from
 from refcloud.scene import SCENES, Model, Scene, View, own_of
 from refcloud.scenes import cumulus, demand, demand_hero
@@ -108,3 +109,24 @@ def test_one_eye_shows_both_pictures_of_a_pair() -> None:
     assert own.camera is not None
     assert own.camera.width == 44
     assert own.camera.fov_y > demand.OWN.fov_y, "each of them is narrow"
+
+
+def test_a_scene_s_name_alone_tells_its_parts() -> None:
+    by_name = own_of("cumulus")
+    assert by_name.medium == own_of(SCENES["cumulus"], View(44, 30)).medium
+    assert by_name.camera is not None
+    assert (by_name.camera.width, by_name.camera.height) == SIZES["final"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        (("cumulos",), ValueError, "^scene: expected one of cumulus, .*got 'cumulos'"),
+        ((3,), TypeError, "^scene: expected a Scene or a text, got 3"),
+        (("cumulus", 3), TypeError, "^view: expected a View, got 3"),
+        ((), TypeError, "^own_of: missing a required argument: 'scene'"),
+    ],
+)
+def test_what_is_no_scene_is_refused(arguments, error, message) -> None:
+    with pytest.raises(error, match=message):
+        own_of(*arguments)

@@ -15,8 +15,8 @@ LONGEST_FILE = 300
 # From the ground up. A file imports from lower floors and from its own room only.
 FLOORS = (
     ("conventions", "references", "products"),
-    ("refusal",),
-    ("paths",),
+    ("refusal", "frozen"),
+    ("paths", "shapes"),
     ("checking", "extremes"),
     ("files", "parameters", "processes"),
     ("noise", "optics", "camera", "image"),

@@ -17,6 +17,7 @@ from refcloud.cloudmap.box import spanned
 from refcloud.cloudmap.texture import THRESHOLD
 from refcloud.cloudmap.voxels import MOST_MADE, VoxelGrid
 from refcloud.conventions import Array, Range, Seed, Shape, Vector
+from refcloud.frozen import sealed
 from refcloud.noise import worley_smooth_grid
 from refcloud.noise.worley_smooth import Detail, Octaves
 
@@ -68,7 +69,8 @@ def placed_texture(
     """
     lower, upper = spanned(first, second)
     _refuse_many("repeats", texture.density.size * math.prod(repeats))
-    return VoxelGrid(np.tile(texture.density, repeats[::-1]), lower, upper)
+    density = np.tile(texture.density, repeats[::-1])
+    return VoxelGrid(sealed(density), lower, upper)
 
 
 @checked
@@ -145,7 +147,7 @@ def box_cloud(
     np.subtract(1.0, noise, out=noise)
     noise /= 1.0 - threshold
     np.subtract(cover, noise, out=noise)
-    return VoxelGrid(np.maximum(noise, 0.0, out=noise), lower, upper)
+    return VoxelGrid(sealed(np.maximum(noise, 0.0, out=noise)), lower, upper)
 
 
 @checked

@@ -13,6 +13,7 @@ from refcloud.cloudmap.cumulus import cumulus_ellipsoids, depth_inside, displace
 from refcloud.cloudmap.quadric import evaluate_quadric, modulate, quadric
 from refcloud.cloudmap.voxels import MOST_MADE, VoxelGrid, steps_of
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped
+from refcloud.frozen import sealed
 from refcloud.noise import octave_bound, octave_sum_grid, uniform
 from refcloud.noise.weights import PEAKS
 
@@ -248,4 +249,4 @@ def _cropped(
     lower = (origin + low[::-1]) * voxel
     upper = (origin + high[::-1]) * voxel
     kept = density[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]
-    return VoxelGrid(np.ascontiguousarray(kept), lower, upper, skipped)
+    return VoxelGrid(sealed(np.ascontiguousarray(kept)), lower, upper, skipped)

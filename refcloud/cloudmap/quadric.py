@@ -14,6 +14,7 @@ import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Array, Positive, Range, Shape, Vector
+from refcloud.refusal import complaint
 
 # The inverse square of a radius must stay a finite number.
 SMALLEST_RADIUS = 1e-150
@@ -50,7 +51,8 @@ def quadric(
     Raises
     ------
     ValueError
-        A radius is so small that its inverse square is not finite.
+        A radius is so small that its inverse square is not finite, or the center so
+        many radii away that a coefficient is not.
 
     Source: paper M, eq 8; E15.
 
@@ -65,15 +67,20 @@ def quadric(
         )
     frame = _rotation(turn, tilt, roll) / radii  # columns over the radii
     A = frame @ frame.T
-    b = A @ center
-    return np.array(
-        [
-            1.0 - center @ b,
-            *(-A[0, 0], -A[1, 1], -A[2, 2]),
-            *(-2.0 * A[0, 1], -2.0 * A[1, 2], -2.0 * A[0, 2]),
-            *(2.0 * b),
-        ]
-    )
+    with np.errstate(over="ignore", invalid="ignore"):
+        b = A @ center
+        q = np.array(
+            [
+                1.0 - center @ b,
+                *(-A[0, 0], -A[1, 1], -A[2, 2]),
+                *(-2.0 * A[0, 1], -2.0 * A[1, 2], -2.0 * A[0, 2]),
+                *(2.0 * b),
+            ]
+        )
+    if not np.isfinite(q).all():
+        expected = "a place whose square over that of the radii is a number"
+        raise ValueError(complaint("center", expected, f"{np.abs(center).max():.4g}"))
+    return q
 
 
 def _rotation(turn: float, tilt: float, roll: float) -> Array:
@@ -105,6 +112,11 @@ def evaluate_quadric(
     -------
     Shape (...,): 1 at an ellipsoid's centre, 0 on its surface, negative outside.
 
+    Raises
+    ------
+    ValueError
+        A point is so far away that the value is not finite.
+
     Source: paper M, eq 8.
 
     Examples
@@ -113,12 +125,17 @@ def evaluate_quadric(
     array([1., 0.])
     """
     x, y, z = np.moveaxis(points, -1, 0)
-    return (
-        x * (q[1] * x + q[4] * y + q[6] * z + q[7])
-        + y * (q[2] * y + q[5] * z + q[8])
-        + z * (q[3] * z + q[9])
-        + q[0]
-    )
+    with np.errstate(over="ignore", invalid="ignore"):
+        Q = (
+            x * (q[1] * x + q[4] * y + q[6] * z + q[7])
+            + y * (q[2] * y + q[5] * z + q[8])
+            + z * (q[3] * z + q[9])
+            + q[0]
+        )
+    if not np.isfinite(Q).all():
+        expected = "places at which the quadric's value is a number"
+        raise ValueError(complaint("points", expected, "some farther away"))
+    return Q
 
 
 @checked

@@ -15,6 +15,7 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.cloudmap.voxels import VoxelGrid
 from refcloud.conventions import Positive, Range, Seed
+from refcloud.frozen import sealed
 from refcloud.noise import remap, worley_smooth_grid
 from refcloud.noise.worley_smooth import Detail, Octaves, Period
 
@@ -76,4 +77,4 @@ def worley_smooth_texture(
     low, one = np.array(threshold), np.ones(())
     density = np.maximum(remap(noise, low, one, 0.0 * one, one), 0.0)
     corner = np.full(3, 0.5 * side)
-    return VoxelGrid(density, -corner, corner)
+    return VoxelGrid(sealed(density), -corner, corner)

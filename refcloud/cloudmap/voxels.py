@@ -18,9 +18,12 @@ MOST_MADE = 1 << 25
 STEP = 1 << 20  # cells of a grid that are made at a time
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class VoxelGrid:
     """A cloud as densities on a grid; the value sits at its cell's centre.
+
+    It holds copies of arrays that could still be written into; one that is read-only
+    it keeps. A grid equals itself alone: compare its arrays.
 
     Attributes
     ----------
@@ -39,7 +42,7 @@ class VoxelGrid:
     skipped: tuple[Skipped, ...] = ()
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        check_fields(self, own=True)
         if min(self.density.shape) < 1:
             raise ValueError(
                 "density: expected at least one cell along each axis,"

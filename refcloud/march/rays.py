@@ -9,7 +9,6 @@ import numpy as np
 from refcloud.conventions import Array
 from refcloud.march.box import refuse_still
 from refcloud.optics import Medium
-from refcloud.refusal import complaint
 
 
 @dataclass(frozen=True)
@@ -32,14 +31,9 @@ class Rays:
 
 
 def as_rays(origins: Array, directions: Array) -> Rays:
-    """Make one list of arrays that broadcast; refuse what does not."""
+    """Make one list of arrays that broadcast, as `checked` has seen to."""
     refuse_still(directions)
-    try:
-        shape = np.broadcast_shapes(origins.shape, directions.shape)
-    except ValueError:
-        expected = f"a shape that fits origins of {origins.shape}"
-        got = f"shape {directions.shape}"
-        raise ValueError(complaint("directions", expected, got)) from None
+    shape = np.broadcast_shapes(origins.shape, directions.shape)
     # Axis by axis: a sum over three neighbours takes longer than three long rows.
     x, y, z = (np.abs(directions[..., k]) for k in range(3))
     largest = np.maximum(np.maximum(x, y), z)[..., None]

@@ -17,11 +17,12 @@ from refcloud.metaballs.kernels import Kernel
 VOXEL_REACH = 1.5  # radius in mean cell edges
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Metaballs:
     """A cloud as N balls of density, each falling from its centre to 0 at its radius.
 
-    The balls are numbered 0 to N - 1 everywhere (E16).
+    The balls are numbered 0 to N - 1 everywhere (E16). Arrays that could still be
+    written into are copied. A set of balls equals itself alone: compare its arrays.
 
     Attributes
     ----------
@@ -44,7 +45,7 @@ class Metaballs:
     skipped: tuple[Skipped, ...] = ()
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        check_fields(self, own=True)
 
     def __repr__(self) -> str:
         """Say what it is without its numbers."""

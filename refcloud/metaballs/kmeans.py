@@ -158,6 +158,8 @@ def clusters_around(points: Array, centers: Array) -> Clusters:
 
 def _scaled(points: Array) -> tuple[Array, Array, float]:
     """Centre points and scale them into [-1, 1]."""
+    # Their mean depends in its last bits on their order in memory: it is always this.
+    points = np.ascontiguousarray(points)
     middle = points.mean(axis=0) if len(points) else np.zeros(3)
     centred = points - middle
     scale = float(np.abs(centred).max(initial=0.0)) or 1.0

@@ -10,12 +10,16 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.conventions import Array, Shape
 from refcloud.metaballs.heights import Product, dot, power_iteration
+from refcloud.refusal import complaint
 
 # Optimality: the projected gradient against the right side, and the most steps.
 OPTIMAL = 1e-12
 MOST_STEPS = 20_000
 # A gram matrix may differ from its transpose by rounding of this share.
 SYMMETRIC = 1e-9
+# An entry of its diagonal that is above 0, but below this share of the largest, would
+# take the squares of what is divided by its root out of the numbers.
+SMALLEST = 1e-100
 
 
 @checked
@@ -40,8 +44,9 @@ def non_negative_least_squares(
     Raises
     ------
     ValueError
-        The matrix is not symmetric, has a negative diagonal, or is so close to
-        singular that the conditions cannot be met.
+        The matrix is not symmetric, has a negative diagonal or one that spans over 100
+        decades, or is so close to singular that the conditions cannot be met; the
+        heights are too large to be numbers.
 
     Source: the standard third phase; eq 20 of paper M with v >= 0.
 
@@ -50,21 +55,44 @@ def non_negative_least_squares(
     >>> non_negative_least_squares([[2.0, 1.0], [1.0, 2.0]], [2.0, -1.0])
     array([1., 0.])
     """
+    # 1. Scale both to about 1, so that squares stay numbers: by powers of 2, and of 4
+    #    where roots are taken, which change no digit.
+    of_gram, of_right = 2 * (_exponent(gram) // 2), _exponent(right)
+    least = np.diagonal(gram).min(initial=np.inf, where=np.diagonal(gram) > 0.0)
+    gram, right = np.ldexp(gram, -of_gram), np.ldexp(right, -of_right)
     diagonal = np.diagonal(gram)
+    largest = float(np.abs(gram).max(initial=0.0))
     skew = float(np.abs(gram - gram.T).max(initial=0.0))
-    if skew > SYMMETRIC * float(np.abs(gram).max(initial=0.0)):
+    if skew > SYMMETRIC * largest:
         raise ValueError(f"gram: expected a symmetric matrix, got a skew of {skew:.2g}")
     if diagonal.min(initial=0.0) < 0.0:
+        below = np.ldexp(diagonal.min(), of_gram)
         raise ValueError(
-            f"gram: expected a diagonal from 0, got {diagonal.min():.2g}; use A^T A"
+            f"gram: expected a diagonal from 0, got {below:.2g}; use A^T A"
         )
+    if np.ldexp(least, -of_gram) < SMALLEST * largest:
+        expected = f"a diagonal of 0 or at least {SMALLEST:g} times the largest entry"
+        advice = "leave such balls out"
+        raise ValueError(complaint("gram", expected, f"{least:.2g}", advice))
+    # 2. Solve.
     v, off = solve_non_negative(lambda x: gram @ x, diagonal, right, optimal=OPTIMAL)
     if off > 10.0 * OPTIMAL:
         raise ValueError(
             "gram: expected a matrix that is not almost singular, got one that leaves"
             f" {off:.2g} of the right side; leave out balls that repeat one another"
         )
+    # 3. Scale back.
+    with np.errstate(over="ignore"):
+        v = np.ldexp(v, of_right - of_gram)
+    if not np.isfinite(v).all():
+        expected = "numbers so small beside gram that heights are numbers"
+        raise ValueError(complaint("right", expected, "larger ones"))
     return v
+
+
+def _exponent(numbers: Array) -> int:
+    """Give the power of 2 next above all numbers' sizes."""
+    return int(np.frexp(np.abs(numbers).max(initial=0.0))[1])
 
 
 def solve_non_negative(
@@ -113,7 +141,10 @@ def solve_non_negative(
         reduced = np.minimum(x / step, free)
         if dot(bound, bound) > dot(reduced, free):  # release
             image = times(bound)
-            length = dot(gradient, bound) / dot(bound, image)
+            curvature = dot(bound, image)
+            if not curvature > 0.0:  # flat without end: nothing is least
+                break
+            length = dot(gradient, bound) / curvature
             x = x - length * bound
             gradient = gradient - length * image
             free = direction = np.where(x > 0.0, gradient, 0.0)

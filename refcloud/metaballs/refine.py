@@ -14,6 +14,8 @@ from refcloud.metaballs.pairs import Pairs, Work, list_pairs
 
 # Damping: where it starts, and how a good and a bad step change it.
 DAMPING, EASE, HARDEN = 0.1, 0.3, 5.0
+# Below this share of the diagonal, damping is lost in the rounding of the blocks.
+SOFTEST = float(np.finfo(float).eps)
 # Conjugate gradients: most steps, and the share of the right side that ends them.
 INNER_STEPS, INNER_SHARE = 8, 0.03
 # A step moves a centre by at most this many radii, and log R by at most this much.
@@ -78,15 +80,26 @@ def refine(
     """Move all balls to lower the squared error over all voxels.
 
     Formula: (J^T J + mu diag J^T J) s = J^T (y - g), a step s for (c, log R, v)
+
+    Steps end early where the damping has become so large that none lowers the cost.
     """
     damping = DAMPING
+    # With D for the diagonal, A = J^T J <= A + mu D, r = y - g and b = J^T r: the
+    # linear model's cost falls by 2 b.s - s.A s <= 2 b.s <= 2 b.(A + mu D)^-1 b
+    # <= 2 b.D^-1 b / mu; b.s is largest for the solution itself, so this holds for
+    # each of the conjugate gradients' steps too. b_i^2 <= D_ii |r|^2 for each of the
+    # 5 N unknowns, hence the fall is at most 10 N |r|^2 / mu (what the model leaves
+    # out is of order 1 / mu^2). From this mu on it is under half a last bit of |r|^2.
+    stiffest = 20.0 * len(state.fit.radii) / np.finfo(float).eps
     jacobian = _jacobian(state.pairs, state.fit, kernel) if steps else np.zeros((5, 0))
     for number in range(steps):
+        if damping > stiffest:
+            break
         step = _solve(state.pairs, jacobian, state.residual, damping, inner)
         trial = listed(work, _moved(work, state.fit, step, least_radius), kernel)
         if trial.cost < state.cost:
             state = trial
-            damping *= EASE
+            damping = max(damping * EASE, SOFTEST)
             if number + 1 < steps:
                 jacobian = _jacobian(state.pairs, state.fit, kernel)
         else:

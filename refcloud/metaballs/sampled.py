@@ -9,6 +9,7 @@ import numpy as np
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Range
+from refcloud.frozen import sealed
 from refcloud.metaballs.balls import Metaballs
 from refcloud.metaballs.field import field_grid
 from refcloud.refusal import complaint
@@ -63,4 +64,5 @@ def sampled_map(
     x, y, z = (
         low + (np.arange(n) + 0.5) * edge for low, n in zip(lower, counts, strict=True)
     )
-    return VoxelGrid(field_grid(balls, x, y=y, z=z), lower, lower + counts * edge)
+    density = sealed(field_grid(balls, x, y=y, z=z))
+    return VoxelGrid(density, lower, lower + counts * edge)

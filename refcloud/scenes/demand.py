@@ -34,6 +34,7 @@ from refcloud.conventions import (
     Array,
 )
 from refcloud.declared import Kind, enter_kind, nothing_own
+from refcloud.frozen import sealed
 from refcloud.image import Picture, srgb_decode
 from refcloud.lighting import Octaves, octave_march
 from refcloud.march import ray_box
@@ -82,7 +83,7 @@ def cloud_in_box(of: Boxed, view: View) -> VoxelGrid:
         return VoxelGrid(blown.density, lower, upper)
     grid = box_cloud(lower, upper, voxel=fineness(view), **how)
     # Single lumps near the walls would hang in the air as beads.
-    return VoxelGrid(largest_part(grid.density), grid.lower, grid.upper)
+    return VoxelGrid(sealed(largest_part(grid.density)), grid.lower, grid.upper)
 
 
 def lumps(of: Boxed) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from typing import Annotated
 import numpy as np
 
 from refcloud.checking import check_fields, checked
-from refcloud.conventions import Array, Positive, Range, Seed, Shape
+from refcloud.conventions import UNIT, Array, Range, Seed, Shape
 from refcloud.noise import octave_bound, octave_frame, simplex_derivative, uniform
 from refcloud.noise.octaves import Octaves, Persistence
 
@@ -39,7 +39,7 @@ class Displacement:
     """
 
     amount: Annotated[float, Range(0.0, 1.0, open_upper=True)] = 0.35
-    frequency: Annotated[float, Positive] = 1.4
+    frequency: Annotated[float, Range(1e-100, 1e100)] = 1.4
     octaves: Octaves = 1
     persistence: Persistence = 0.5
     seed: Seed = 0
@@ -50,7 +50,7 @@ class Displacement:
 
 @checked
 def displaced_sphere(
-    directions: Annotated[Array, Shape("N", 3), Range()],
+    directions: Annotated[Array, Shape("N", 3), UNIT],
     displacement: Displacement,
     *,
     time: Annotated[float, Range(-1e6, 1e6)] = 0.0,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.conventions import Array
+from refcloud.frozen import sealed
 from refcloud.optics import Medium, Sun
 from refcloud.refusal import complaint
 from refcloud.transport.delta_m import delta_m
@@ -66,7 +67,7 @@ def cut_out(grid: VoxelGrid, plan: Plan, sigma: float) -> tuple[Plan, VoxelGrid,
     density = np.pad(grid.density[kept], [(0, int(n)) for n in room])
     lower = grid.lower + first[::-1] * size
     upper = lower + (extent + room)[::-1] * size
-    return replace(plan, stages=stages), VoxelGrid(density, lower, upper), base
+    return replace(plan, stages=stages), VoxelGrid(sealed(density), lower, upper), base
 
 
 def beam_norms(

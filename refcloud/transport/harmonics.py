@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.checking import checked
-from refcloud.conventions import WHOLE_SPHERE, Array, Range, Shape
+from refcloud.conventions import UNIT, WHOLE_SPHERE, Array, Range, Shape
 
 Places = NDArray[np.integer[Any]]
 
 
 @checked
 def harmonics(
-    vectors: Annotated[Array, Shape("...", 3)], degree: Annotated[int, Range(0, 32)]
+    vectors: Annotated[Array, Shape("...", 3), UNIT],
+    degree: Annotated[int, Range(0, 32)],
 ) -> Array:
     """Evaluate the real spherical harmonics up to a degree.
 

@@ -112,3 +112,12 @@ def test_ellipsoids_refuse_by_name(given_, name: str) -> None:
 def test_modulation_refuses_by_name(given_, name: str) -> None:
     with pytest.raises(ValueError, match=rf"^{name}: expected [^\n]*$"):
         modulate(**({"Q": [0.5], "noise": [0.5]} | given_))
+
+
+def test_places_beyond_numbers_are_refused() -> None:
+    ball = quadric([0, 0, 0], [1, 1, 1])
+    assert evaluate_quadric(ball, [[1e150, 0, 0]])[0] == pytest.approx(-1e300)
+    with pytest.raises(ValueError, match=r"^points: expected places at which the"):
+        evaluate_quadric(ball, [[0, 0, 0], [1e300, 0, 0]])
+    with pytest.raises(ValueError, match=r"^center: expected a place .* got 1e"):
+        quadric([1e300, 0, 0], [1, 1, 1])

@@ -135,9 +135,30 @@ def test_neither_unit_of_density_nor_of_the_kernel_shows(exponent):
     np.testing.assert_allclose(scaled, plain, atol=1e-9)
 
 
+@pytest.mark.parametrize("of_gram", [-1030, -600, 0, 600, 1000])
+@pytest.mark.parametrize("of_right", [-1020, -600, 0, 600, 1000])
+def test_heights_keep_their_digits_at_any_scale(of_gram: int, of_right: int) -> None:
+    """Squares of 1e300 are no numbers, and those of 1e-300 are 0."""
+    gram, right = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([3.0, 2.0])
+    plain = non_negative_least_squares(gram, right)
+    scaled = np.ldexp(gram, of_gram), np.ldexp(right, of_right)
+    if of_right - of_gram >= 1024:
+        with pytest.raises(ValueError, match=r"^right: expected numbers so small"):
+            non_negative_least_squares(*scaled)
+        return
+    found = non_negative_least_squares(*scaled)
+    with np.errstate(under="ignore"):
+        np.testing.assert_array_equal(found, np.ldexp(plain, of_right - of_gram))
+
+
 @pytest.mark.parametrize(
     ("gram", "message"),
     [
+        (
+            [[1e-310, 0.0], [0.0, 1.0]],
+            "gram: expected a diagonal of 0 or at least 1e-1",
+        ),
+        ([[1.0, -1.0], [-1.0, 1.0]], "gram: expected a matrix that is not almost sing"),
         ([[1.0, 2.0], [0.0, 1.0]], "gram: expected a symmetric matrix"),
         ([[-1.0, 0.0], [0.0, 1.0]], "gram: expected a diagonal from 0"),
         ([[1.0, 0.0]], r"gram: expected an array of shape \(N, N\)"),

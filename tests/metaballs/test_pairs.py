@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from twins.metaballs import kernels, scattered, seeds
 
 from refcloud.cloudmap.voxels import VoxelGrid
-from refcloud.metaballs import profile
+from refcloud.metaballs import approximate, errors_of_fit, profile
 from refcloud.metaballs.pairs import Pairs, Work, list_pairs, prepare
 from refcloud.metaballs.refine import Fit, _jacobian, _solve, listed, refine
 from refcloud.noise.hashing import uniform
@@ -210,3 +210,33 @@ def test_steps_never_raise_the_error_and_keep_the_bounds(seed, kernel):
     end = refine(work, state, kernel, steps=6, least_radius=0.7, observe=watch)
     assert end.cost == pytest.approx(costs[-1], rel=1e-12)
     assert all(b <= a for a, b in pairwise(costs))
+
+
+@settings(max_examples=20)
+@given(seed=seeds, kernel=kernels, damping=st.sampled_from([1e-6, 0.1, 1e3, 1e9, 1e17]))
+def test_damping_bounds_what_a_step_gains(seed, kernel, damping):
+    """The bound that ends the steps: a fall of at most 10 N |r|^2 / mu."""
+    work, fit = make_work(seed), make_fit(seed, 4)
+    state = listed(work, fit, kernel)
+    pairs, residual = state.pairs, state.residual
+    jacobian = _jacobian(pairs, fit, kernel)
+    step = _solve(pairs, jacobian, residual, damping)
+    image = pairs.by_voxel(np.einsum("ip,ip->p", jacobian, pairs.spread(step)))
+    fall = 2.0 * float(residual @ image) - float(image @ image)
+    assert fall <= 10.0 * 4 * state.cost / damping
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_the_most_steps_end_where_none_lowers_the_cost(cloud, count: int) -> None:
+    """Damping that grew on would overflow: numpy's warnings are errors here."""
+    taken: list[str] = []
+    grid = cloud()
+    most = approximate(
+        grid,
+        count=count,
+        refine_steps=10_000,
+        observe=lambda name, _: taken.append(name),
+    )
+    assert len(taken) < 2_000
+    few = approximate(grid, count=count, refine_steps=5)
+    assert errors_of_fit(grid, most).density < errors_of_fit(grid, few).density

@@ -115,3 +115,14 @@ def test_a_sphere_that_is_not_moved_is_one() -> None:
     points, normals = displaced_sphere(ways(9), Displacement(amount=0.0), time=3.0)
     np.testing.assert_allclose(points, ways(9), atol=1e-15)
     np.testing.assert_allclose(normals, ways(9), atol=1e-15)
+
+
+def test_a_displaced_sphere_takes_unit_vectors_and_waves_that_are_numbers() -> None:
+    with pytest.raises(ValueError, match=r"^directions: expected numbers in \[-1, 1\]"):
+        displaced_sphere([[0.0, 1e300, 0.0]], Displacement())
+    with pytest.raises(ValueError, match=r"^frequency: expected .* in \[1e-100, 1e"):
+        Displacement(frequency=1e300)
+    for frequency in (1e-100, 1e100):
+        fine = Displacement(frequency=frequency, octaves=32)
+        _, normals = displaced_sphere(ways(9), fine)
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-14)

@@ -105,3 +105,11 @@ def test_mixing_ends_when_it_may_go_no_further() -> None:
     found = fixed_point(lambda x: 2.0 * x + 1.0, np.ones(3), tolerance=0.0, most=3)
     assert found.iterations <= 3
     assert not found.converged or found.residual == 0.0
+
+
+def test_harmonics_take_unit_vectors() -> None:
+    with pytest.raises(ValueError, match=r"^vectors: expected numbers in \[-1, 1\]"):
+        harmonics([[1e300, 0.0, 0.0]], 2)
+    rounded = np.array([[0.6, 0.0, 0.8]], dtype=np.float32)  # of length 1.00000003
+    exact = harmonics([[0.6, 0.0, 0.8]], 2)
+    np.testing.assert_allclose(harmonics(rounded, 2), exact, atol=1e-6)
