@@ -70,7 +70,7 @@ def run(words: Sequence[str]) -> int:
         raise ValueError(complaint("--frames", "how many pictures", "none"))
     path = Path(given.named(f"{name}-animation.png"))
     if path.suffix and not path.is_dir():
-        ready(path, SUFFIXES)
+        ready(path, SUFFIXES, inputs=[what])
     stages = Stages()
     cloud, parts, notes = prepared(given, chosen, stages)
 

@@ -84,10 +84,10 @@ def run(words: Sequence[str]) -> int:
     source = Path(given.arguments[0])
     stem = source.stem.removesuffix(VOXELS)
     name = f"{stem}-levels.npz" if levels else default_name(stem, 0)
-    path = ready(given.named(name), SUFFIXES)
+    path = ready(given.named(name), SUFFIXES, inputs=[source])
     shown = given.options.get(PICTURE.flag)
     if shown is not None:
-        shown = ready(shown, PICTURES, PICTURE.flag)
+        shown = ready(shown, PICTURES, PICTURE.flag, inputs=[source])
     stages = _Stages()
     with stages.stage("load"):
         grid = load_voxels(source)
@@ -102,7 +102,7 @@ def run(words: Sequence[str]) -> int:
             balls = approximate(grid, **chosen, observe=stages.watch)
         sets, rows = (balls,), balls.skipped
         if given.output is None:
-            path = ready(default_name(stem, len(balls)), SUFFIXES)
+            path = ready(default_name(stem, len(balls)), SUFFIXES, inputs=[source])
         with stages.stage("save"):
             save_metaballs(balls, path)
     notes = list(stages.tried)

@@ -24,6 +24,7 @@ ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
 NO_NUMBERS = 1
 KINDS = "a cloud map, metaballs or levels (.npz, of refcloud generate or approximate)"
 TOML = ".toml"
+PICTURES = (".png", ".npy")
 
 
 def find(what: str) -> bool:
@@ -44,6 +45,8 @@ def find(what: str) -> bool:
         if path.exists():
             raise ValueError(complaint("WHAT", expected, f"{path}, no file"))
         raise ValueError(complaint("WHAT", expected, repr(what[:60])))
+    if path.suffix.lower() in PICTURES:  # what is drawn of it would have that name
+        raise ValueError(complaint(what, KINDS, "the name of a picture"))
     return False
 
 

@@ -45,9 +45,10 @@ def command() -> Command:
 def run(words: Sequence[str]) -> int:
     """Compare two pictures and give the verdict as exit status."""
     given = command().parse(words)
-    path = None if given.output is None else ready(given.output, SUFFIXES)
+    path, (first, second) = given.output, given.arguments
+    if path is not None:
+        path = ready(path, SUFFIXES, inputs=given.arguments)
     stages = Stages()
-    first, second = given.arguments
     with stages.stage("load"):
         a, b = codes_of(first), codes_of(second)
     notes: list[str] = []

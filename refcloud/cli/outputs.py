@@ -14,17 +14,37 @@ from refcloud.refusal import complaint
 FLAG = "--output"
 
 
-def ready(path: str | Path, suffixes: tuple[str, ...], flag: str = FLAG) -> Path:
+def ready(
+    path: str | Path,
+    suffixes: tuple[str, ...],
+    flag: str = FLAG,
+    *,
+    inputs: Iterable[str | Path] = (),
+) -> Path:
     """Find out that the file of an option can be written, before any work is done.
+
+    Parameters
+    ----------
+    path
+        The file.
+    suffixes
+        How its name may end.
+    flag
+        The option.
+    inputs
+        What the command reads: it is not written over, by whatever name.
 
     Raises
     ------
     ValueError
-        The name ends otherwise, is a folder's, or its folder is missing or closed.
+        The name ends otherwise, is a folder's, its folder is missing or closed, or the
+        file is one of the inputs.
     """
     path = Path(path)
     try:
         _check_place(path, suffixes, flag)
+        for source in inputs:
+            _refuse_input(path, Path(source), flag)
         _try(path)
     except OSError as error:
         expected = "a file that can be written"
@@ -43,6 +63,13 @@ def _check_place(path: Path, suffixes: tuple[str, ...], flag: str) -> None:
     if not path.parent.is_dir():
         expected = "a name in an existing folder"
         raise ValueError(complaint(flag, expected, f"{path.parent}", "create it first"))
+
+
+def _refuse_input(path: Path, source: Path, flag: str) -> None:
+    """Refuse to write over what is read; links to one file are the same file."""
+    if path.exists() and source.exists() and path.samefile(source):
+        expected = "another file than those that are read"
+        raise ValueError(complaint(flag, expected, f"{path}", "choose another name"))
 
 
 def _try(path: Path) -> None:

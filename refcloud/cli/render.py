@@ -101,7 +101,7 @@ def run(words: Sequence[str]) -> int:
     find(what)
     name = Path(what).stem
     chosen = chosen_of(given)
-    path = ready(given.named(f"{name}.png"), SUFFIXES)
+    path = ready(given.named(f"{name}.png"), SUFFIXES, inputs=[what])
     stages, notes, saving = Stages(), [], given.of(SAVING)
     if is_studio_file(what):
         with stages.stage("render"):

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+import refcloud.cli.approximate
+import refcloud.cli.compare
 import refcloud.cli.generate
 import refcloud.cli.render
 
@@ -233,6 +235,38 @@ def test_a_closed_folder_is_found_before_the_work(run, here, monkeypatch) -> Non
         status, _, err = run(*words)
         assert status == 2, err
         assert "(Permission denied); choose another name or folder" in err
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "approximate voxels.npz --count 5 -o voxels.npz",
+        "approximate voxels.npz --count 5 -o linked.npz",
+        "approximate voxels.npz --count 5 -o b.npz --picture linked.png",
+        "approximate voxels.npz --levels -o ./voxels.npz",
+        "compare a.png small.png -o a.png",
+        "compare a.png small.png -o ./small.png",
+        "compare a.png small.png -o other.png",
+        "render voxels.npz -o linked.png",
+        "animate voxels.npz --frames 2 --turn-eye 9 -o linked.png",
+    ],
+)
+def test_no_input_is_written_over(line, run, here, monkeypatch) -> None:
+    Path("linked.npz").hardlink_to("voxels.npz")
+    Path("linked.png").symlink_to("voxels.npz")
+    Path("other.png").hardlink_to("small.png")
+    monkeypatch.setattr(refcloud.cli.approximate, "load_voxels", never)
+    monkeypatch.setattr(refcloud.cli.compare, "codes_of", never)
+    monkeypatch.setattr(refcloud.cli.render, "load", never)
+    before = contents(here)
+    status, out, err = run(*line.split())
+    assert (status, out) == (2, "")
+    assert re.fullmatch(
+        r"refcloud: --(output|picture): expected another file than those that are"
+        r" read, got \S+; choose another name\n",
+        err,
+    ), err
+    assert contents(here) == before
 
 
 @pytest.mark.parametrize("line", ["render", "animate", "noise", "compare a.png"])
