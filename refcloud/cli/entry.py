@@ -14,6 +14,7 @@ from typing import NoReturn
 import numpy as np
 
 import refcloud
+from refcloud import interrupts
 from refcloud.cli.outputs import printable
 from refcloud.cli.wording import as_typed
 from refcloud.refusal import complaint
@@ -34,7 +35,7 @@ COMMANDS = {
 }
 BAD_INPUT = 2
 # As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE, SIGTERM).
-INTERRUPTED, PIPE_CLOSED, TERMINATED = 130, 141, 143
+INTERRUPTED, PIPE_CLOSED, TERMINATED = interrupts.STATUS, 141, 143
 DEFECT = 70  # EX_SOFTWARE of sysexits.h: not the caller's fault
 
 
@@ -52,6 +53,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         # What overflows is refused in one line, not warned about.
         with (
+            _interrupted(),
             _terminated(),
             np.errstate(divide="raise", over="raise", invalid="raise"),
         ):
@@ -127,6 +129,19 @@ def _overview() -> str:
 
 class _Terminated(KeyboardInterrupt):
     """A request to terminate, which ends a command as Ctrl-C does."""
+
+
+@contextlib.contextmanager
+def _interrupted() -> Iterator[None]:
+    """Let Ctrl-C raise KeyboardInterrupt where it ended the program at once before."""
+    ours = signal.getsignal(signal.SIGINT) is interrupts.end
+    if ours:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, interrupts.end)
 
 
 @contextlib.contextmanager
