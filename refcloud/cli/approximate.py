@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from refcloud.cli.docstrings import summary
 from refcloud.cli.generate import describe
@@ -13,7 +16,8 @@ from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
-from refcloud.cloudmap import VoxelGrid, load_voxels
+from refcloud.cloudmap import VoxelGrid, cell_centres, cell_size, load_voxels
+from refcloud.extremes import refuse_far, refuse_small
 from refcloud.fit_pictures import FitPictures, fit_pictures
 from refcloud.metaballs import (
     FitErrors,
@@ -24,13 +28,15 @@ from refcloud.metaballs import (
     save_levels,
     save_metaballs,
 )
-from refcloud.refusal import complaint
+from refcloud.refusal import complaint, within
 
 ABOUT = summary(approximate)
 OPTIONS = options_of(approximate)
 IN_A_CHAIN = ("seed", "kernel")  # what levels of detail take of these
 SUFFIXES = (".npz",)
 PICTURES = (".png", ".npy")
+# Density, and density times volume: float64 holds the sums over all voxels and balls.
+MOST_MASS = 1e290
 VOXELS = "-voxels"  # what `refcloud generate` puts at the end of its names
 
 
@@ -91,32 +97,67 @@ def run(words: Sequence[str]) -> int:
     stages = _Stages()
     with stages.stage("load"):
         grid = load_voxels(source)
+        refuse_extreme(f"{source}", grid)
     if levels:
         with stages.stage("approximate"):
             chain = levels_of_detail(grid, **chosen, observe=stages.watch)
         sets, rows = chain.levels, chain.finest.skipped
-        with stages.stage("save"):
-            save_levels(chain, path)
+        save = partial(save_levels, chain)
     else:
         with stages.stage("approximate"):
             balls = approximate(grid, **chosen, observe=stages.watch)
         sets, rows = (balls,), balls.skipped
         if given.output is None:
             path = ready(default_name(stem, len(balls)), SUFFIXES, inputs=[source])
-        with stages.stage("save"):
-            save_metaballs(balls, path)
+        save = partial(save_metaballs, balls)
     notes = list(stages.tried)
-    with stages.stage("measure"):
+    # Measured first: what cannot be measured leaves no file.
+    with stages.stage("measure"), within(f"{source}: "):
         drawn = None
         for balls in sets:
             pictures = fit_pictures(grid, balls, voxels=drawn and drawn.voxels)
             notes += _measured(grid, balls, pictures)
             drawn = pictures
+    with stages.stage("save"):
+        save(path)
         if shown is not None and drawn is not None:
             drawn.side_by_side().save(shown)
             notes.append(f"voxels, balls and difference: {shown}")
     report(notes, rows, stages.line(), path)
     return 0
+
+
+def refuse_extreme(name: str, grid: VoxelGrid) -> None:
+    """Refuse a cloud map whose balls could not be measured and drawn.
+
+    Parameters
+    ----------
+    name
+        The file's.
+    grid
+        What it holds.
+
+    Raises
+    ------
+    ValueError
+        Its places, its cells or its densities are beyond the ends of scenes.
+    """
+    refuse_far(name, [grid.lower, grid.upper])
+    refuse_small(name, cell_size(grid))
+    if not all((np.diff(axis) > 0.0).all() for axis in cell_centres(grid)):
+        largest = float(np.abs([grid.lower, grid.upper]).max())
+        expected = "a box near enough to the origin for its cells to have places"
+        got = (
+            f"coordinates up to {largest:.4g} and cells of {cell_size(grid).min():.4g}"
+        )
+        raise ValueError(complaint(name, expected, got, "move the box"))
+    volume = float(np.max(grid.upper - grid.lower)) ** 3
+    most = MOST_MASS / max(volume, 1.0)
+    densest = float(grid.density.max(initial=0.0))
+    if densest > most:
+        expected = f"densities of at most {most:.4g} in a box of this size"
+        advice = "choose another unit of density"
+        raise ValueError(complaint(name, expected, f"{densest:.4g}", advice))
 
 
 class _Stages(Stages):
