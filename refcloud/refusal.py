@@ -78,6 +78,11 @@ def kind_name(kind: Any) -> str:
     )
 
 
+def installing(extra: str) -> str:
+    """Say how an extra of pyproject.toml is installed, as the README does."""
+    return f'pip install ".[{extra}]" in refcloud\'s folder'
+
+
 def loading(value: Any) -> str:
     """Say what to do with a file's name that came in the place of what it holds."""
     if not isinstance(value, os.PathLike):

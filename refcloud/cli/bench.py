@@ -11,6 +11,7 @@ from pathlib import Path
 
 from refcloud import bench
 from refcloud.bench import certificates, skipping, stability
+from refcloud.bench.plot import matplotlib_figures
 from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import printable, ready, say
 from refcloud.cli.parser import Command
@@ -88,6 +89,8 @@ def run(words: Sequence[str]) -> int:
         return _skipping(how, figure)
     if name == CERTIFICATES:
         return _certificates(how, figure)
+    if figure is not None:
+        matplotlib_figures()  # refused before the work where there is none
     subject = bench.SUBJECTS[name]
     rows = bench.run(subject, how.quick, how.peers)
     if how.json:
