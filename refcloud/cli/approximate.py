@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -32,7 +32,21 @@ from refcloud.refusal import complaint, within
 
 ABOUT = summary(approximate)
 OPTIONS = options_of(approximate)
+DEFAULTS = {option.name: option.default for option in OPTIONS}
 IN_A_CHAIN = ("seed", "kernel")  # what levels of detail take of these
+# What a method takes beside a count or a tolerance, a seed and a kernel.
+_CLUSTERED = ("overlap", "rim", "rim_depth", "rounds", "least_radius")
+TAKES: dict[str, tuple[str, ...]] = {
+    "quick": _CLUSTERED,
+    "standard": (*_CLUSTERED, "refine_steps"),
+    "full": (*_CLUSTERED, "refine_steps"),
+    "man": ("overlap",),
+    "uniform": ("overlap", "least_radius"),
+    "random": ("overlap", "least_radius"),
+    "orthogonal": ("least_radius",),
+    "subtract": ("least_radius",),
+}
+EVERY = ("count", "tolerance", "method", "seed", "kernel")
 SUFFIXES = (".npz",)
 PICTURES = (".png", ".npy")
 # Density, and density times volume: float64 holds the sums over all voxels and balls.
@@ -87,6 +101,7 @@ def run(words: Sequence[str]) -> int:
         other = ", ".join("--" + name for name in chosen if name not in IN_A_CHAIN)
         expected = "no other option of the balls than --seed and --kernel"
         raise ValueError(complaint("--levels", expected, other.replace("_", "-")))
+    _refuse_idle(chosen)
     source = Path(given.arguments[0])
     stem = source.stem.removesuffix(VOXELS)
     name = f"{stem}-levels.npz" if levels else default_name(stem, 0)
@@ -125,6 +140,19 @@ def run(words: Sequence[str]) -> int:
             notes.append(f"voxels, balls and difference: {shown}")
     report(notes, rows, stages.line(), path)
     return 0
+
+
+def _refuse_idle(chosen: Mapping[str, Any]) -> None:
+    """Refuse what the chosen method has no use for."""
+    method = chosen.get("method", DEFAULTS["method"])
+    for name in chosen:
+        if name in EVERY or name in TAKES[method]:
+            continue
+        flag = f"--{name.replace('_', '-')}"
+        others = [other for other in TAKES if name in TAKES[other]]
+        expected = f"none beside --method {method}"
+        advice = "what takes it: --method " + ", ".join(others)
+        raise ValueError(complaint(flag, expected, "one", advice))
 
 
 def refuse_extreme(name: str, grid: VoxelGrid) -> None:

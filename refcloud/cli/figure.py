@@ -74,6 +74,13 @@ def run(words: Sequence[str]) -> int:
         raise ValueError(complaint("NAME", expected, got))
     if how.quick and how.final:
         raise ValueError(complaint("--final", "none beside --quick", "both"))
+    idle = ("quick", "final", "jobs") if how.list else () if how.all else ("jobs",)
+    for name in idle:
+        if getattr(how, name):
+            expected = "none beside " + ("--list" if how.list else "one figure")
+            raise ValueError(complaint(f"--{name}", expected, "one"))
+    if how.list and given.output is not None:
+        raise ValueError(complaint("--output", "none beside --list", "one"))
     quality = "final" if how.final else "quick"
     if how.list:
         return _list()

@@ -155,6 +155,25 @@ BAD = {
     "approximate voxels.npz --count 0": r"--count: .* in \[1, 1000000\], got 0",
     "approximate voxels.npz --count 1000000000": r"--count: .* got 1000000000; choose",
     "approximate voxels.npz --tolerance -1": r"--tolerance: .* in \(0, 1\), got -1",
+    "approximate voxels.npz --method man --rim 2": (
+        "^refcloud: --rim: expected none beside --method man, got one; what takes it:"
+        " --method quick, standard, full$"
+    ),
+    "approximate voxels.npz --method man --rounds 3": "--rounds: expected none beside",
+    "approximate voxels.npz --method man --least-radius 2": (
+        "--least-radius: .*--method man, got one; what takes it: .*, orthogonal, subtr"
+    ),
+    "approximate voxels.npz --method subtract --overlap 3": "--overlap: .* quick, sta",
+    "approximate voxels.npz --method quick --refine-steps 3": "--refine-steps: .* full",
+    "bench --quick": "--quick: expected none without WHAT, got one",
+    "bench --json": "--json: expected none without WHAT, got one",
+    "bench --plot a.png": "--plot: expected none without WHAT, got one",
+    "bench --only balls": "--only: expected ",
+    "bench stability --peers": "--peers: expected none beside stability, which has no",
+    "figure man-10 --jobs 2": "--jobs: expected none beside one figure, got one",
+    "figure --list --quick": "--quick: expected none beside --list, got one",
+    "figure --list --jobs 2": "--jobs: expected none beside --list, got one",
+    "figure --list -o a.png": "--output: expected none beside --list, got one",
     "approximate voxels.npz --method blob": "--method: expected one of .*'blob'",
     "approximate voxels.npz --levels --count 3": "--levels: .*, got --count",
     "bench noise --plot a.jpg": "--plot: expected a name ending in .png",
