@@ -86,8 +86,11 @@ def write_atomically(
         with open(temporary, "wb") as file:
             write(file)
         os.replace(temporary, target)
-    except BaseException:  # an interrupt leaves nothing behind either
+    except BaseException as error:  # an interrupt leaves nothing behind either
         temporary.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.strerror and not error.filename:
+            # Such as a full disk's: it does not say of which file.
+            raise OSError(error.errno, error.strerror, f"{target}") from None
         raise
 
 
@@ -216,10 +219,14 @@ def _opened(file: Path, format: str) -> zipfile.ZipFile:
 
 def _check_kind(archive: zipfile.ZipFile, format: str, version: int) -> None:
     """Compare the file's own format and version with those that are expected."""
-    kind = str(_read(archive, "format", Shape(), TEXT, {}, 1))
-    if kind != format:
-        raise _UnfitError(f"a {format} file, got format {kind!r}")
-    stored = int(_read(archive, "version", Shape(), WHOLE, {}, 1))
+    told = []
+    for name, letters in (("format", TEXT), ("version", WHOLE)):
+        if name + SUFFIX not in archive.NameToInfo:
+            raise _UnfitError(f"a {format} file, got one that tells no {name}")
+        told.append(_read(archive, name, Shape(), letters, {}, 1))
+        if str(told[0]) != format:
+            raise _UnfitError(f"a {format} file, got format {str(told[0])!r}")
+    stored = int(told[1])
     if stored < 1:
         raise _UnfitError(f"a version from 1, got {stored}")
     if stored > version:

@@ -48,13 +48,15 @@ def within(where: str, **names: str) -> Iterator[None]:
 
 
 def digits(number: float) -> str:
-    """Write a number; a whole one in full as long as a line holds it."""
+    """Write a number in all its digits, as long as a line holds them."""
     if isinstance(number, int):
         # Python refuses to write whole numbers of thousands of digits.
         return (
             str(number) if number.bit_length() < 200 else "a number of over 60 digits"
         )
-    return f"{number:g}"
+    short = f"{number:g}"
+    # One that is only just out of its range must not look as if it were within.
+    return short if float(short) == number else repr(float(number))
 
 
 def unit_of(limits: Range) -> str:

@@ -93,6 +93,16 @@ def test_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, error):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_full_disk_names_the_file(tmp_path):
+    def write(file: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space left on device: '.*a'") as failure:
+        write_atomically(tmp_path / "a", write)
+    assert failure.value.filename == f"{tmp_path / 'a'}"
+    assert not list(tmp_path.iterdir())
+
+
 def test_write_replaces_the_old_file(tmp_path):
     path = tmp_path / "a.npz"
     path.write_bytes(b"old and longer")
@@ -148,7 +158,7 @@ DAMAGED = {
     "empty": (b"", "no whole .npz"),
     "truncated": (whole()[:-100], "no whole .npz"),
     "other format": (whole(format=np.array("other")), "got format 'other'"),
-    "no format": (whole(format=None), "expected an array 'format'"),
+    "no format": (whole(format=None), "got one that tells no format"),
     "number as format": (whole(format=np.array(3)), "format as a short text"),
     "long format": (whole(format=np.array("a" * 1000)), "format as a short text"),
     "future version": (whole(version=np.array(2)), "got version 2; update"),

@@ -28,6 +28,7 @@ from refcloud.metaballs import (
     save_levels,
     save_metaballs,
 )
+from refcloud.paths import refuse_path
 from refcloud.refusal import complaint, within
 
 ABOUT = summary(approximate)
@@ -103,6 +104,7 @@ def run(words: Sequence[str]) -> int:
         raise ValueError(complaint("--levels", expected, other.replace("_", "-")))
     _refuse_idle(chosen)
     source = Path(given.arguments[0])
+    refuse_path("IN.npz", source)
     stem = source.stem.removesuffix(VOXELS)
     name = f"{stem}-levels.npz" if levels else default_name(stem, 0)
     path = ready(given.named(name), SUFFIXES, inputs=[source])

@@ -17,6 +17,7 @@ from refcloud.files import read_arrays
 from refcloud.metaballs import Levels, Metaballs, load_levels, load_metaballs
 from refcloud.metaballs.file import FORMAT as METABALLS
 from refcloud.metaballs.levels_file import FORMAT as LEVELS
+from refcloud.paths import refuse_path
 from refcloud.refusal import complaint, within
 from refcloud.scenes import SCENES, Scene
 
@@ -36,7 +37,10 @@ def find(what: str) -> bool:
         No scene has that name, and it does not look like a file.
     """
     path = Path(what)
-    if what in SCENES or path.suffix == TOML:
+    if what in SCENES:
+        return True
+    refuse_path("WHAT", what)
+    if path.suffix == TOML:
         return True
     if path.suffix != ".npz" and not path.is_file():
         expected = "a file (.npz, .toml) or one of the scenes " + ", ".join(

@@ -18,6 +18,7 @@ from refcloud.image import (
     load_picture,
     read_png,
 )
+from refcloud.paths import refuse_path
 from refcloud.refusal import complaint
 
 ABOUT = summary(compare_codes)
@@ -48,6 +49,11 @@ def run(words: Sequence[str]) -> int:
     path, (first, second) = given.output, given.arguments
     if path is not None:
         path = ready(path, SUFFIXES, inputs=given.arguments)
+    for name, file in (("A", first), ("B", second)):
+        refuse_path(name, file)
+        if Path(file).suffix.lower() not in SUFFIXES:
+            expected = "a picture, by a name ending in " + " or ".join(SUFFIXES)
+            raise ValueError(complaint(name, expected, repr(file[:60])))
     stages = Stages()
     with stages.stage("load"):
         a, b = codes_of(first), codes_of(second)

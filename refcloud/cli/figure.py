@@ -9,7 +9,7 @@ from pathlib import Path
 
 from refcloud.animation.animate import Jobs
 from refcloud.cli.options import options_of
-from refcloud.cli.outputs import ready, report, say
+from refcloud.cli.outputs import ready, ready_folder, report, say
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.figure import figures, find_figure
@@ -105,6 +105,7 @@ def _list() -> int:
 
 
 def _all(folder: Path, quality: str, jobs: int) -> int:
+    ready_folder(folder)
     stages, names = Stages(), list(figures())
 
     def tell(done: int) -> None:

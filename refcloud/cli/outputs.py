@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
@@ -12,6 +13,7 @@ from refcloud.conventions import Skipped
 from refcloud.refusal import complaint
 
 FLAG = "--output"
+STDOUT = "standard output"  # in the place of a file's name
 
 
 def ready(
@@ -54,12 +56,40 @@ def ready(
     return path
 
 
+def ready_folder(path: Path, flag: str = FLAG) -> None:
+    """Find out that a folder can be made or written into, before any work is done.
+
+    Raises
+    ------
+    ValueError
+        It is a file, or its own folder is missing or closed.
+    """
+    if path.exists() and not path.is_dir():
+        raise ValueError(complaint(flag, "a folder", f"the file {path}"))
+    _check_parent(path, flag)
+    try:
+        if path.is_dir():
+            _try(path / "a")
+        else:
+            path.mkdir()
+            path.rmdir()
+    except OSError as error:
+        expected = "a folder that can be written"
+        got = f"{str(path)[:60]} ({error.strerror})"
+        advice = "choose another name or folder"
+        raise ValueError(complaint(flag, expected, got, advice)) from None
+
+
 def _check_place(path: Path, suffixes: tuple[str, ...], flag: str) -> None:
     if path.is_dir():
         raise ValueError(complaint(flag, "a file's name", f"the folder {path}"))
     if path.suffix.lower() not in suffixes:
         expected = "a name ending in " + " or ".join(suffixes)
         raise ValueError(complaint(flag, expected, repr(path.name)))
+    _check_parent(path, flag)
+
+
+def _check_parent(path: Path, flag: str) -> None:
     if not path.parent.is_dir():
         expected = "a name in an existing folder"
         raise ValueError(complaint(flag, expected, f"{path.parent}", "create it first"))
@@ -81,7 +111,19 @@ def _try(path: Path) -> None:
 
 def say(line: str) -> None:
     """Print a line of results; signs that the terminal lacks are escaped."""
-    print(printable(line, sys.stdout))
+    with to_stdout():
+        print(printable(line, sys.stdout))
+
+
+@contextmanager
+def to_stdout() -> Iterator[None]:
+    """Let what cannot be printed name standard output; a closed pipe is no failure."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, STDOUT) from None
 
 
 def printable(line: str, stream: TextIO) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from refcloud.cli.options import FileOption, Option
+from refcloud.cli.outputs import say
 from refcloud.cli.values import number, value_of
 from refcloud.refusal import complaint
 
@@ -121,7 +122,7 @@ class Command:
             names = self._arguments[:must]
             names += [f"[{name}]" for name in self._arguments[must:]]
             self._parser.usage = " ".join([self.name, *names, "[options]"])
-            print(self._parser.format_help(), end="")
+            say(self._parser.format_help().rstrip("\n"))
             raise SystemExit(0)
         spaced, _ = self._parser.parse_known_args(flags)
         typed = vars(spaced)
