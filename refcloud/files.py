@@ -18,7 +18,7 @@ import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Range, Shape
-from refcloud.paths import refuse_long
+from refcloud.paths import refuse_long, written_at
 
 # Kinds of array: numpy's letters for them, in words, and most bytes of one element.
 NUMBERS = ("iuf", "integers or floats", 8)
@@ -52,7 +52,8 @@ def write_atomically(
     Parameters
     ----------
     path
-        Where the file goes. Its folder must exist.
+        Where the file goes. Its folder must exist; a link stays, and what it leads to
+        is written.
     write
         Function that is called with the open binary file.
 
@@ -61,7 +62,7 @@ def write_atomically(
     FileNotFoundError
         The folder does not exist.
     ValueError
-        The path is a folder.
+        The path is a folder, a pipe or a device.
 
     Source: project, W04 and W05.
 
@@ -73,7 +74,7 @@ def write_atomically(
     ...     Path(folder, "a").read_bytes()
     b'cloud'
     """
-    target = Path(path)
+    target = written_at("path", path)
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     refuse_long("path", target.name, len(temporary.name) - len(target.name))
     if not target.parent.is_dir():

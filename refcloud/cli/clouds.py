@@ -24,6 +24,7 @@ from refcloud.scenes import SCENES, Scene
 ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
 NO_NUMBERS = 1
 KINDS = "a cloud map, metaballs or levels (.npz, of refcloud generate or approximate)"
+LOADERS = {VOXELS: load_voxels, LEVELS: load_levels, METABALLS: load_metaballs}
 TOML = ".toml"
 PICTURES = (".png", ".npy")
 
@@ -90,17 +91,15 @@ def load(path: str) -> Metaballs | VoxelGrid | Levels:
     """
     if not Path(path).exists():
         raise FileNotFoundError(complaint(path, KINDS, "no such file"))
-    if _is(VOXELS, path):
-        return load_voxels(path)
-    if _is(LEVELS, path):
-        return load_levels(path)
-    try:
-        return load_metaballs(path)
-    except ValueError as refusal:
-        if _is(METABALLS, path):
-            raise
-        got = str(refusal).rpartition(", got ")[2]
-        raise ValueError(complaint(path, KINDS, got)) from None
+    came = []
+    for kind, load_kind in LOADERS.items():
+        got = _other_than(kind, path)
+        if not got:
+            return load_kind(path)
+        came.append(got)
+    # Of the format that it tells, the file lacks less than of others.
+    got = next((each for each in came if not each.startswith("format ")), came[0])
+    raise ValueError(complaint(path, KINDS, got))
 
 
 def denser(
@@ -128,13 +127,13 @@ def denser(
     return dataclasses.replace(cloud, densities=density * cloud.densities)
 
 
-def _is(kind: str, path: str) -> bool:
-    """Tell whether a file says that it is of some kind."""
+def _other_than(kind: str, path: str) -> str:
+    """Say what a file is that does not say it is of some kind; nothing if it does."""
     try:
         read_arrays(path, kind, ANY_VERSION, {}, NO_NUMBERS)
-    except ValueError:
-        return False
-    return True
+    except ValueError as refusal:
+        return str(refusal).rpartition(", got ")[2]
+    return ""
 
 
 def describe(cloud: Metaballs | VoxelGrid | Levels) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TextIO
 
 from refcloud.conventions import Skipped
+from refcloud.paths import written_at
 from refcloud.refusal import complaint
 
 FLAG = "--output"
@@ -39,15 +40,17 @@ def ready(
     Raises
     ------
     ValueError
-        The name ends otherwise, is a folder's, its folder is missing or closed, or the
-        file is one of the inputs.
+        The name ends otherwise, is a folder's, a pipe's or a device's, its folder is
+        missing or closed, or the file is one of the inputs.
     """
     path = Path(path)
     try:
         _check_place(path, suffixes, flag)
         for source in inputs:
             _refuse_input(path, Path(source), flag)
-        _try(path)
+        target = written_at(flag, path)
+        _check_parent(target, flag)
+        _try(target)
     except OSError as error:
         expected = "a file that can be written"
         got = f"{str(path)[:60]} ({error.strerror})"

@@ -269,6 +269,33 @@ def test_outputs_are_refused_before_the_work(name, run, here, monkeypatch) -> No
     assert run("generate", "-o", name).status == 2
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_pipes_and_links_to_nowhere_are_found_before_the_work(
+    run, here, monkeypatch
+) -> None:
+    os.mkfifo("pipe.npz")
+    Path("lost.npz").symlink_to("no/a.npz")
+    monkeypatch.setattr(refcloud.cli.generate, "generate", never)
+    for name, line in (
+        ("pipe", "expected the name of a plain file, got pipe.npz, a pipe or a device"),
+        (
+            "lost",
+            f"expected a name in an existing folder, got {here / 'no'}; create it",
+        ),
+    ):
+        status, _, err = run("generate", "-o", f"{name}.npz")
+        assert status == 2
+        assert err.startswith(f"refcloud: --output: {line}"), err
+
+
+def test_an_output_that_is_a_link_stays_one(run, here) -> None:
+    Path("there.npz").symlink_to("made.npz")
+    small = "--diameters 8 6 6 --relief 1 --voxel 1 -o there.npz"
+    assert run("generate", *small.split()).status == 0
+    assert Path("there.npz").is_symlink()
+    assert Path("made.npz").is_file()
+
+
 def test_a_closed_folder_is_found_before_the_work(run, here, monkeypatch) -> None:
     def closed(path: Path, *how: object) -> None:
         raise PermissionError(13, "Permission denied", str(path))
