@@ -19,6 +19,17 @@ def complaint(name: str, expected: str, got: str, advice: str = "") -> str:
     return f"{name}: expected {expected}, got {got}" + (f"; {advice}" if advice else "")
 
 
+def counted(count: int, thing: str) -> str:
+    """Write how many there are of a thing that takes an s.
+
+    Examples
+    --------
+    >>> counted(1, "ball"), counted(0, "occupied voxel")
+    ('1 ball', '0 occupied voxels')
+    """
+    return f"{count} {thing}" + ("" if count == 1 else "s")
+
+
 def refuse_beside(what: str, **given: object) -> None:
     """Refuse arguments that are given beside something that brings its own."""
     for name, value in given.items():

@@ -14,7 +14,7 @@ from refcloud.animation.job import folder_of, held
 from refcloud.cli.clouds import find
 from refcloud.cli.docstrings import summary
 from refcloud.cli.options import Option, options_of
-from refcloud.cli.outputs import ready, ready_folder, report
+from refcloud.cli.outputs import OVER, ready, ready_folder, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.cli.render import (
@@ -50,7 +50,7 @@ def command() -> Command:
         "animate",
         ABOUT,
         output="an animated file (.png, .apng, .gif or .webp), or a folder for the"
-        " frames themselves; by default WHAT-animation.png",
+        " frames themselves; by default WHAT-animation.png" + OVER,
     )
     made.argument("WHAT", "a scene (see refcloud list), or a cloud's file, as render")
     made.group("the frames", "", FRAMES)

@@ -13,7 +13,7 @@ import numpy as np
 from refcloud.cli.docstrings import summary
 from refcloud.cli.generate import describe
 from refcloud.cli.options import FileOption, options_of
-from refcloud.cli.outputs import ready, report
+from refcloud.cli.outputs import OVER, ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.cloudmap import VoxelGrid, cell_centres, cell_size, load_voxels
@@ -29,7 +29,7 @@ from refcloud.metaballs import (
     save_metaballs,
 )
 from refcloud.paths import refuse_path
-from refcloud.refusal import complaint, within
+from refcloud.refusal import complaint, counted, within
 
 ABOUT = summary(approximate)
 OPTIONS = options_of(approximate)
@@ -86,7 +86,7 @@ def command() -> Command:
         "approximate",
         ABOUT,
         output="name of the metaballs' file (.npz); by default IN-COUNTballs.npz with"
-        " the number of balls that there are, or IN-levels.npz",
+        " the number of balls that there are, or IN-levels.npz" + OVER,
     )
     made.argument("IN.npz", "a cloud map, as refcloud generate writes it")
     made.group("the balls", "", OPTIONS)
@@ -206,7 +206,7 @@ class _Stages(Stages):
 def _measured(grid: VoxelGrid, balls: Metaballs, pictures: FitPictures) -> list[str]:
     """Say how far one set of balls is from the cloud map."""
     return [
-        f"{describe(grid)}: {len(balls)} balls",
+        f"{describe(grid)}: {counted(len(balls), 'ball')}",
         *described(errors_of_fit(grid, balls)),
         f"relative RMSE of the rendered picture: {pictures.error:.4f}",
     ]

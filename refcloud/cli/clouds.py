@@ -18,7 +18,7 @@ from refcloud.metaballs import Levels, Metaballs, load_levels, load_metaballs
 from refcloud.metaballs.file import FORMAT as METABALLS
 from refcloud.metaballs.levels_file import FORMAT as LEVELS
 from refcloud.paths import refuse_path
-from refcloud.refusal import complaint, within
+from refcloud.refusal import complaint, counted, within
 from refcloud.scenes import SCENES, Scene
 
 ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
@@ -142,4 +142,4 @@ def describe(cloud: Metaballs | VoxelGrid | Levels) -> str:
         return "levels of " + ", ".join(str(len(each)) for each in cloud.levels)
     if isinstance(cloud, VoxelGrid):
         return described_grid(cloud)
-    return f"{len(cloud)} balls"
+    return counted(len(cloud), "ball")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from refcloud.animation.animate import Jobs
 from refcloud.cli.options import options_of
-from refcloud.cli.outputs import ready, ready_folder, report, say
+from refcloud.cli.outputs import OVER, ready, ready_folder, report, say
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.figure import figures, find_figure
@@ -55,7 +55,7 @@ def command() -> Command:
         "figure",
         ABOUT,
         output="name of the picture (.png, or .npy for linear light), by default"
-        " NAME.png; with --all the folder, by default figures",
+        " NAME.png; with --all the folder, by default figures" + OVER,
     )
     made.argument("NAME", "which figure (see --list)", optional=True)
     made.group("the figures", "", OPTIONS)

@@ -14,6 +14,7 @@ from refcloud.paths import written_at
 from refcloud.refusal import complaint
 
 FLAG = "--output"
+OVER = "; a file of that name is written over"  # what help says of most outputs
 STDOUT = "standard output"  # in the place of a file's name
 
 

@@ -14,7 +14,7 @@ from refcloud.cli.changed import changed
 from refcloud.cli.clouds import denser, describe, find, load, scene_of
 from refcloud.cli.docstrings import parameter_texts, summary
 from refcloud.cli.options import Option, options_of
-from refcloud.cli.outputs import ready, report
+from refcloud.cli.outputs import OVER, ready, report
 from refcloud.cli.parser import Command, Given
 from refcloud.cli.progress import Stages
 from refcloud.cli.setting import (
@@ -35,7 +35,7 @@ from refcloud.image import Picture
 from refcloud.march import Mixing
 from refcloud.metaballs import Levels, Metaballs, choose_level
 from refcloud.metaballs.levels import covered_share, picture_bounds
-from refcloud.refusal import complaint
+from refcloud.refusal import complaint, counted
 from refcloud.render import as_drawn, is_marched, render
 from refcloud.scenes import Scene, View
 
@@ -74,7 +74,7 @@ def command() -> Command:
         "render",
         ABOUT,
         output="name of the picture (.png, or .npy for linear light); by default"
-        " WHAT.png",
+        " WHAT.png" + OVER,
     )
     made.argument(
         "WHAT",
@@ -234,5 +234,6 @@ def level_note(levels: Levels, camera: AnyCamera, chosen: Metaballs) -> str:
         for balls, bound in zip(levels.levels, bounds, strict=True)
         if len(balls) < len(chosen) and bound <= 1.0
     ]
-    line = f"level of {len(chosen)} balls, at {100.0 * share:.3g} % of the picture"
+    size = f"{100.0 * share:.3g} % of the picture"
+    line = f"level of {counted(len(chosen), 'ball')}, at {size}"
     return f"{line}: {', '.join(fewer)}" if fewer else line

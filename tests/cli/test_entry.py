@@ -178,14 +178,14 @@ def test_compare_refuses_an_alpha_that_counts_by_its_own_file(line, run, alphas)
     assert status == 2
     assert err.startswith(
         "refcloud: clear.png: expected an opaque picture beside grey.png, which has no"
-        " alpha, got 1 pixels that are not opaque; draw it before a background, or"
+        " alpha, got 1 pixel that is not opaque; draw it before a background, or"
     )
 
 
 def test_compare_takes_alphas_of_both_into_account(run, alphas) -> None:
     ended = run("compare", *"clear.png opaque.png --codes 0".split())
     assert ended.status == 1
-    assert "worst pixel: row 1, column 2, 1 codes" in ended.out
+    assert "worst pixel: row 1, column 2, 1 code\n" in ended.out
     assert "alpha" not in ended.out
 
 
