@@ -1,5 +1,6 @@
 """refcloud: a teaching reference for clouds, from noise to picture, in numpy."""
 
+from refcloud import interrupts as interrupts  # before all others, see there
 from refcloud import scenes
 from refcloud.animation import Moves, animate
 from refcloud.camera import Camera, OrthographicCamera

@@ -18,7 +18,7 @@ import numpy as np
 
 from refcloud.checking import checked
 from refcloud.conventions import Range, Shape
-from refcloud.paths import refuse_long
+from refcloud.paths import refuse_long, written_at
 
 # Kinds of array: numpy's letters for them, in words, and most bytes of one element.
 NUMBERS = ("iuf", "integers or floats", 8)
@@ -52,7 +52,8 @@ def write_atomically(
     Parameters
     ----------
     path
-        Where the file goes. Its folder must exist.
+        Where the file goes. Its folder must exist; a link stays, and what it leads to
+        is written.
     write
         Function that is called with the open binary file.
 
@@ -61,7 +62,7 @@ def write_atomically(
     FileNotFoundError
         The folder does not exist.
     ValueError
-        The path is a folder.
+        The path is a folder, a pipe or a device.
 
     Source: project, W04 and W05.
 
@@ -73,7 +74,7 @@ def write_atomically(
     ...     Path(folder, "a").read_bytes()
     b'cloud'
     """
-    target = Path(path)
+    target = written_at("path", path)
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     refuse_long("path", target.name, len(temporary.name) - len(target.name))
     if not target.parent.is_dir():
@@ -86,8 +87,11 @@ def write_atomically(
         with open(temporary, "wb") as file:
             write(file)
         os.replace(temporary, target)
-    except BaseException:  # an interrupt leaves nothing behind either
+    except BaseException as error:  # an interrupt leaves nothing behind either
         temporary.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.strerror and not error.filename:
+            # Such as a full disk's: it does not say of which file.
+            raise OSError(error.errno, error.strerror, f"{target}") from None
         raise
 
 
@@ -216,10 +220,14 @@ def _opened(file: Path, format: str) -> zipfile.ZipFile:
 
 def _check_kind(archive: zipfile.ZipFile, format: str, version: int) -> None:
     """Compare the file's own format and version with those that are expected."""
-    kind = str(_read(archive, "format", Shape(), TEXT, {}, 1))
-    if kind != format:
-        raise _UnfitError(f"a {format} file, got format {kind!r}")
-    stored = int(_read(archive, "version", Shape(), WHOLE, {}, 1))
+    told = []
+    for name, letters in (("format", TEXT), ("version", WHOLE)):
+        if name + SUFFIX not in archive.NameToInfo:
+            raise _UnfitError(f"a {format} file, got one that tells no {name}")
+        told.append(_read(archive, name, Shape(), letters, {}, 1))
+        if str(told[0]) != format:
+            raise _UnfitError(f"a {format} file, got format {str(told[0])!r}")
+    stored = int(told[1])
     if stored < 1:
         raise _UnfitError(f"a version from 1, got {stored}")
     if stored > version:

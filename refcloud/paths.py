@@ -62,3 +62,31 @@ def refuse_long(name: str, part: str, room: int = 0) -> None:
     if size > LONGEST_NAME - room:
         expected = f"a name of at most {LONGEST_NAME - room} bytes"
         raise ValueError(complaint(name, expected, f"{size}", "choose a shorter one"))
+
+
+def written_at(name: str, path: str | os.PathLike[str]) -> Path:
+    """Follow a link to the file that is to be written; refuse what is no plain file.
+
+    Parameters
+    ----------
+    name
+        What the refusal calls the path.
+    path
+        Where a file is to be written. A file that is written under another name and
+        renamed would take the place of a link, a pipe or a device.
+
+    Returns
+    -------
+    The path, or what it leads to; that may be a folder, or not be there.
+
+    Raises
+    ------
+    ValueError
+        It is a pipe, a device or a socket.
+    """
+    path = Path(path)
+    target = Path(os.path.realpath(path)) if path.is_symlink() else path
+    if target.exists() and not (target.is_file() or target.is_dir()):
+        got = f"{path}, a pipe or a device"
+        raise ValueError(complaint(name, "the name of a plain file", got))
+    return target

@@ -20,6 +20,17 @@ def complaint(name: str, expected: str, got: str, advice: str = "") -> str:
     return f"{name}: expected {expected}, got {got}" + (f"; {advice}" if advice else "")
 
 
+def counted(count: int, thing: str) -> str:
+    """Write how many there are of a thing that takes an s.
+
+    Examples
+    --------
+    >>> counted(1, "ball"), counted(0, "occupied voxel")
+    ('1 ball', '0 occupied voxels')
+    """
+    return f"{count} {thing}" + ("" if count == 1 else "s")
+
+
 def refuse_beside(what: str, **given: object) -> None:
     """Refuse arguments that are given beside something that brings its own."""
     for name, value in given.items():
@@ -49,13 +60,15 @@ def within(where: str, **names: str) -> Iterator[None]:
 
 
 def digits(number: float) -> str:
-    """Write a number; a whole one in full as long as a line holds it."""
+    """Write a number in all its digits, as long as a line holds them."""
     if isinstance(number, int):
         # Python refuses to write whole numbers of thousands of digits.
         return (
             str(number) if number.bit_length() < 200 else "a number of over 60 digits"
         )
-    return f"{number:g}"
+    short = f"{number:g}"
+    # One that is only just out of its range must not look as if it were within.
+    return short if float(short) == number else repr(float(number))
 
 
 def unit_of(limits: Range) -> str:
@@ -96,6 +109,11 @@ def meant(given: Iterable[str], known: list[str]) -> str:
     unknown = [name for name in given if name not in known]
     near = difflib.get_close_matches(unknown[0], known, 1) if unknown else []
     return f"; did you mean {near[0]}?" if near else ""
+
+
+def installing(extra: str) -> str:
+    """Say how an extra of pyproject.toml is installed, as the README does."""
+    return f'pip install ".[{extra}]" in refcloud\'s folder'
 
 
 def loading(value: Any) -> str:

@@ -39,7 +39,7 @@ from refcloud.march.multiple import Scattering
 from refcloud.march_picture import draw_march
 from refcloud.metaballs import Metaballs, voxel_balls
 from refcloud.optics import Medium, Sun
-from refcloud.refusal import refuse_beside
+from refcloud.refusal import counted, refuse_beside
 from refcloud.scene import Scene, View, find_scene
 from refcloud.sky import Sky
 from refcloud.transport import LightVolume
@@ -215,7 +215,8 @@ def render(
     refuse_extreme(cloud, suns or (), medium, camera)
     drawn = as_drawn(cloud, method)
     if drawn is not cloud and isinstance(drawn, Metaballs):
-        notes.append(f"drawn as one ball per occupied voxel: {len(drawn)} balls")
+        count = counted(len(drawn), "ball")
+        notes.append(f"drawn as one ball per occupied voxel: {count}")
     rules = None if march else named(look or "cumulus")
     if medium is None:
         medium, note = default_medium(drawn, rules)

@@ -15,7 +15,7 @@ from refcloud.metaballs import Metaballs, save_metaballs
 from refcloud.scene import SCENES, Scene
 
 BALL = Metaballs([[0.0, 0.0, 0.0]], [1.0], [1.0])
-NO_MODERNGL = r"backend: expected moderngl .*, got none; pip install \"refcloud\[gl\]\""
+NO_MODERNGL = r"backend: expected moderngl .*, got none; pip install \"\.\[gl\]\" in"
 NO_OPENGL = "backend: expected OpenGL 3.3 .*, got libEGL.so.1 not loaded; install Mesa"
 
 

@@ -93,6 +93,43 @@ def test_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, error):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_link_stays_and_what_it_leads_to_is_written(tmp_path):
+    (tmp_path / "there").mkdir()
+    for name in ("there/old", "there/new"):
+        link = tmp_path / name[-3:]
+        link.symlink_to(name)
+        write_atomically(link, lambda file: file.write(b"cloud"))
+        assert link.is_symlink()
+        assert (tmp_path / name).read_bytes() == b"cloud"
+        write_atomically(link, lambda file: file.write(b"clouds"))
+        assert (tmp_path / name).read_bytes() == b"clouds"
+    assert sorted(p.name for p in tmp_path.rglob("*")) == [
+        *("new", "new", "old", "old", "there"),
+    ]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_a_pipe_is_refused_and_stays(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    (tmp_path / "link").symlink_to("pipe")
+    for path in (pipe, tmp_path / "link"):
+        with pytest.raises(ValueError, match="path: expected the name of a plain file"):
+            write_atomically(path, lambda file: None)
+    assert pipe.is_fifo()
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_full_disk_names_the_file(tmp_path):
+    def write(file: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space left on device") as failure:
+        write_atomically(tmp_path / "a", write)
+    assert failure.value.filename == f"{tmp_path / 'a'}"
+    assert not list(tmp_path.iterdir())
+
+
 def test_write_replaces_the_old_file(tmp_path):
     path = tmp_path / "a.npz"
     path.write_bytes(b"old and longer")
@@ -148,7 +185,7 @@ DAMAGED = {
     "empty": (b"", "no whole .npz"),
     "truncated": (whole()[:-100], "no whole .npz"),
     "other format": (whole(format=np.array("other")), "got format 'other'"),
-    "no format": (whole(format=None), "expected an array 'format'"),
+    "no format": (whole(format=None), "got one that tells no format"),
     "number as format": (whole(format=np.array(3)), "format as a short text"),
     "long format": (whole(format=np.array("a" * 1000)), "format as a short text"),
     "future version": (whole(version=np.array(2)), "got version 2; update"),

@@ -14,7 +14,7 @@ LONGEST_FILE = 300
 
 # From the ground up. A file imports from lower floors and from its own room only.
 FLOORS = (
-    ("conventions", "references", "products"),
+    ("conventions", "interrupts", "references", "products"),
     ("refusal", "frozen"),
     ("paths", "shapes"),
     ("checking", "extremes"),

@@ -205,10 +205,11 @@ class Lesson:
         if self.script is None:
             return {}
         command = Command(
-            self.script.name,
+            f"{HERE.name}/{self.script.name}",
             summary(picture),
             output="folder of the pictures; by default the current one",
-            program="tutorial",
+            program="python",
+            kind="FOLDER",
         )
         knobs, how = options_of(picture), options_of(Run)
         command.group("the picture", "", knobs)

@@ -11,6 +11,7 @@ from typing import Any
 
 from refcloud.bench.subject import Subject
 from refcloud.bench.timing import Row
+from refcloud.refusal import complaint, installing
 
 # Pixels of the figure, and dots to an inch: about as wide as a page.
 WIDTH, HEIGHT, DENSITY = 640, 480, 100
@@ -103,9 +104,8 @@ def matplotlib_figures() -> Any:
     try:
         return importlib.import_module("matplotlib.figure")
     except ImportError:
-        raise ValueError(
-            "--plot: expected matplotlib, got none; install refcloud[bench]"
-        ) from None
+        advice = installing("bench")
+        raise ValueError(complaint("--plot", "matplotlib", "none", advice)) from None
 
 
 def of_task(rows: Sequence[Row], task: str) -> list[Row]:

@@ -14,7 +14,7 @@ from refcloud.animation.job import folder_of, held
 from refcloud.cli.clouds import find
 from refcloud.cli.docstrings import summary
 from refcloud.cli.options import Option, options_of
-from refcloud.cli.outputs import ready, report
+from refcloud.cli.outputs import OVER, ready, ready_folder, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.cli.render import (
@@ -50,7 +50,7 @@ def command() -> Command:
         "animate",
         ABOUT,
         output="an animated file (.png, .apng, .gif or .webp), or a folder for the"
-        " frames themselves; by default WHAT-animation.png",
+        " frames themselves; by default WHAT-animation.png" + OVER,
     )
     made.argument("WHAT", "a scene (see refcloud list), or a cloud's file, as render")
     made.group("the frames", "", FRAMES)
@@ -70,7 +70,9 @@ def run(words: Sequence[str]) -> int:
         raise ValueError(complaint("--frames", "how many pictures", "none"))
     path = Path(given.named(f"{name}-animation.png"))
     if path.suffix and not path.is_dir():
-        ready(path, SUFFIXES)
+        ready(path, SUFFIXES, inputs=[what])
+    else:
+        ready_folder(path)
     stages = Stages()
     cloud, parts, notes = prepared(given, chosen, stages)
 
@@ -117,12 +119,12 @@ def _going_on(path: Path, redraw: bool) -> Iterator[None]:
 
 @contextmanager
 def _worded() -> Iterator[None]:
-    """Name what can move as it is typed, where nothing was asked to."""
+    """Name what can move as it is typed, where nothing or something else was asked."""
     try:
         yield
     except ValueError as refusal:
         text = str(refusal)
-        if text.startswith("moves: "):
+        if text.startswith("moves: ") or "what can move: " in text:
             for option in MOVES:
-                text = re.sub(rf"\b{option.name}(?=[,)])", option.flag, text)
+                text = re.sub(rf"\b{option.name}(?=[,)]|$)", option.flag, text)
         raise ValueError(text) from None

@@ -5,15 +5,16 @@ from __future__ import annotations
 import dataclasses
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from refcloud import bench
 from refcloud.bench import certificates, skipping, stability
+from refcloud.bench.plot import matplotlib_figures
 from refcloud.cli.options import FileOption, options_of
 from refcloud.cli.outputs import printable, ready, say
-from refcloud.cli.parser import Command
+from refcloud.cli.parser import Command, Given
 from refcloud.refusal import complaint
 
 ABOUT = "Measure run time against error; without a name list what can be measured."
@@ -69,6 +70,7 @@ def run(words: Sequence[str]) -> int:
     """Measure, and print the rows."""
     given = command().parse(words)
     if not given.arguments:
+        _refuse_idle(given, "without WHAT", given.options)
         for name, what in subjects().items():
             say(f"{name:12}  {what}")
         return 0
@@ -80,6 +82,8 @@ def run(words: Sequence[str]) -> int:
     if how.only is not None and name != CERTIFICATES:
         advice = f"only {CERTIFICATES} has kinds"
         raise ValueError(complaint("--only", f"none beside {name}", how.only, advice))
+    if name not in bench.SUBJECTS:
+        _refuse_idle(given, f"beside {name}, which has no peers", ["--peers"])
     if figure is not None:
         figure = ready(figure, FIGURES, PLOT.flag)
     if name == STABILITY:
@@ -88,6 +92,8 @@ def run(words: Sequence[str]) -> int:
         return _skipping(how, figure)
     if name == CERTIFICATES:
         return _certificates(how, figure)
+    if figure is not None:
+        matplotlib_figures()  # refused before the work where there is none
     subject = bench.SUBJECTS[name]
     rows = bench.run(subject, how.quick, how.peers)
     if how.json:
@@ -97,6 +103,13 @@ def run(words: Sequence[str]) -> int:
     if figure is not None:
         _name(bench.plot(subject, rows, figure), how)
     return 0
+
+
+def _refuse_idle(given: Given, where: str, flags: Iterable[str]) -> None:
+    """Refuse options that would change nothing."""
+    for flag in flags:
+        if given.options.get(flag, False) is not False:
+            raise ValueError(complaint(flag, f"none {where}", "one"))
 
 
 def _name(figure: Path, how: Measurement) -> None:

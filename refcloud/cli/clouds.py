@@ -17,13 +17,16 @@ from refcloud.files import read_arrays
 from refcloud.metaballs import Levels, Metaballs, load_levels, load_metaballs
 from refcloud.metaballs.file import FORMAT as METABALLS
 from refcloud.metaballs.levels_file import FORMAT as LEVELS
-from refcloud.refusal import complaint, within
+from refcloud.paths import refuse_path
+from refcloud.refusal import complaint, counted, within
 from refcloud.scenes import SCENES, Scene
 
 ANY_VERSION = 2**62  # the loader of each kind refuses what it cannot read
 NO_NUMBERS = 1
 KINDS = "a cloud map, metaballs or levels (.npz, of refcloud generate or approximate)"
+LOADERS = {VOXELS: load_voxels, LEVELS: load_levels, METABALLS: load_metaballs}
 TOML = ".toml"
+PICTURES = (".png", ".npy")
 
 
 def find(what: str) -> bool:
@@ -35,7 +38,10 @@ def find(what: str) -> bool:
         No scene has that name, and it does not look like a file.
     """
     path = Path(what)
-    if what in SCENES or path.suffix == TOML:
+    if what in SCENES:
+        return True
+    refuse_path("WHAT", what)
+    if path.suffix == TOML:
         return True
     if path.suffix != ".npz" and not path.is_file():
         expected = "a file (.npz, .toml) or one of the scenes " + ", ".join(
@@ -44,6 +50,8 @@ def find(what: str) -> bool:
         if path.exists():
             raise ValueError(complaint("WHAT", expected, f"{path}, no file"))
         raise ValueError(complaint("WHAT", expected, repr(what[:60])))
+    if path.suffix.lower() in PICTURES:  # what is drawn of it would have that name
+        raise ValueError(complaint(what, KINDS, "the name of a picture"))
     return False
 
 
@@ -83,17 +91,15 @@ def load(path: str) -> Metaballs | VoxelGrid | Levels:
     """
     if not Path(path).exists():
         raise FileNotFoundError(complaint(path, KINDS, "no such file"))
-    if _is(VOXELS, path):
-        return load_voxels(path)
-    if _is(LEVELS, path):
-        return load_levels(path)
-    try:
-        return load_metaballs(path)
-    except ValueError as refusal:
-        if _is(METABALLS, path):
-            raise
-        got = str(refusal).rpartition(", got ")[2]
-        raise ValueError(complaint(path, KINDS, got)) from None
+    came = []
+    for kind, load_kind in LOADERS.items():
+        got = _other_than(kind, path)
+        if not got:
+            return load_kind(path)
+        came.append(got)
+    # Of the format that it tells, the file lacks less than of others.
+    got = next((each for each in came if not each.startswith("format ")), came[0])
+    raise ValueError(complaint(path, KINDS, got))
 
 
 def denser(
@@ -121,13 +127,13 @@ def denser(
     return dataclasses.replace(cloud, densities=density * cloud.densities)
 
 
-def _is(kind: str, path: str) -> bool:
-    """Tell whether a file says that it is of some kind."""
+def _other_than(kind: str, path: str) -> str:
+    """Say what a file is that does not say it is of some kind; nothing if it does."""
     try:
         read_arrays(path, kind, ANY_VERSION, {}, NO_NUMBERS)
-    except ValueError:
-        return False
-    return True
+    except ValueError as refusal:
+        return str(refusal).rpartition(", got ")[2]
+    return ""
 
 
 def describe(cloud: Metaballs | VoxelGrid | Levels) -> str:
@@ -136,4 +142,4 @@ def describe(cloud: Metaballs | VoxelGrid | Levels) -> str:
         return "levels of " + ", ".join(str(len(each)) for each in cloud.levels)
     if isinstance(cloud, VoxelGrid):
         return described_grid(cloud)
-    return f"{len(cloud)} balls"
+    return counted(len(cloud), "ball")

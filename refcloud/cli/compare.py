@@ -9,7 +9,7 @@ import numpy as np
 
 from refcloud.cli.docstrings import summary
 from refcloud.cli.options import options_of
-from refcloud.cli.outputs import ready, report, say
+from refcloud.cli.outputs import OVER, ready, report, say
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.image import (
@@ -18,7 +18,8 @@ from refcloud.image import (
     load_picture,
     read_png,
 )
-from refcloud.refusal import complaint
+from refcloud.paths import refuse_path
+from refcloud.refusal import complaint, counted
 
 ABOUT = summary(compare_codes)
 OPTIONS = options_of(compare_codes, without=("a", "b"))
@@ -33,7 +34,8 @@ def command() -> Command:
     made = Command(
         "compare",
         f"{ABOUT} Ends with status 0 if they do, 1 if not, 2 on bad input.",
-        output="name of a picture of the difference (.png or .npy); by default none",
+        output="name of a picture of the difference (.png or .npy); by default none"
+        + OVER,
     )
     made.argument("A", "a picture (.png, or .npy of linear light)")
     made.argument("B", "a picture of the same size")
@@ -45,9 +47,15 @@ def command() -> Command:
 def run(words: Sequence[str]) -> int:
     """Compare two pictures and give the verdict as exit status."""
     given = command().parse(words)
-    path = None if given.output is None else ready(given.output, SUFFIXES)
+    path, (first, second) = given.output, given.arguments
+    if path is not None:
+        path = ready(path, SUFFIXES, inputs=given.arguments)
+    for name, file in (("A", first), ("B", second)):
+        refuse_path(name, file)
+        if Path(file).suffix.lower() not in SUFFIXES:
+            expected = "a picture, by a name ending in " + " or ".join(SUFFIXES)
+            raise ValueError(complaint(name, expected, repr(file[:60])))
     stages = Stages()
-    first, second = given.arguments
     with stages.stage("load"):
         a, b = codes_of(first), codes_of(second)
     notes: list[str] = []
@@ -68,11 +76,11 @@ def run(words: Sequence[str]) -> int:
             shown.save(path, tone="none", dither=False)
     say("same" if found.same else "different")
     notes += [
-        f"largest difference: {found.worst} codes",
+        f"largest difference: {counted(found.worst, 'code')}",
         f"pixels off: {100.0 * found.off_share:.4g} %",
     ]
     notes += [
-        f"worst pixel: row {row}, column {column}, {off} codes"
+        f"worst pixel: row {row}, column {column}, {counted(off, 'code')}"
         for row, column, off in found.worst_pixels
     ]
     report(notes, (), stages.line(), path)
@@ -95,7 +103,8 @@ def _without_alpha(
     clear = int(np.count_nonzero(codes[..., COLOURS] < OPAQUE))
     if clear:
         expected = f"an opaque picture beside {other}, which has no alpha"
-        got = f"{clear} pixels that are not opaque"
+        verb = "is" if clear == 1 else "are"
+        got = f"{counted(clear, 'pixel')} that {verb} not opaque"
         advice = "draw it before a background, or compare it with one that has an alpha"
         raise ValueError(complaint(path, expected, got, advice))
     notes.append(f"{path}: its alpha is opaque, and left out")

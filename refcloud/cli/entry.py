@@ -14,8 +14,10 @@ from typing import NoReturn
 import numpy as np
 
 import refcloud
-from refcloud.cli.outputs import printable
+from refcloud import interrupts
+from refcloud.cli.outputs import STDOUT, printable, say, to_stdout
 from refcloud.cli.wording import as_typed
+from refcloud.paths import LONGEST_NAME
 from refcloud.refusal import complaint
 
 # Each command is a file of this room, imported when it is asked for.
@@ -34,7 +36,7 @@ COMMANDS = {
 }
 BAD_INPUT = 2
 # As a shell counts them: 128 and the number of the signal (SIGINT, SIGPIPE, SIGTERM).
-INTERRUPTED, PIPE_CLOSED, TERMINATED = 130, 141, 143
+INTERRUPTED, PIPE_CLOSED, TERMINATED = interrupts.STATUS, 141, 143
 DEFECT = 70  # EX_SOFTWARE of sysexits.h: not the caller's fault
 
 
@@ -52,11 +54,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         # What overflows is refused in one line, not warned about.
         with (
+            _interrupted(),
             _terminated(),
             np.errstate(divide="raise", over="raise", invalid="raise"),
         ):
             status = _run(words)
-        sys.stdout.flush()
+        with to_stdout():
+            sys.stdout.flush()
         return status
     except SystemExit as end:  # help was printed
         return _flushed(int(end.code or 0))
@@ -79,10 +83,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         if error.strerror is None:
             return _fail(BAD_INPUT, str(error))
-        _abandon_stdout_where_it_failed(error)
-        name = os.fsdecode(error.filename) if error.filename else "output"
-        expected = "to read or write it"
-        return _fail(BAD_INPUT, complaint(name, expected, error.strerror))
+        return _failed_at(error)
     except (ValueError, TypeError) as error:
         return _fail(BAD_INPUT, str(error))
     except Exception as error:
@@ -93,10 +94,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(words: list[str]) -> int:
     name, *rest = words or [""]
     if name in ("-h", "--help"):
-        print(_overview())
+        say(_overview())
         return 0
     if name == "--version":
-        print(f"refcloud {refcloud.__version__}")
+        say(f"refcloud {refcloud.__version__}")
         return 0
     if name not in COMMANDS:
         expected = "one of " + ", ".join(COMMANDS)
@@ -130,6 +131,19 @@ class _Terminated(KeyboardInterrupt):
 
 
 @contextlib.contextmanager
+def _interrupted() -> Iterator[None]:
+    """Let Ctrl-C raise KeyboardInterrupt where it ended the program at once before."""
+    ours = signal.getsignal(signal.SIGINT) is interrupts.end
+    if ours:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, interrupts.end)
+
+
+@contextlib.contextmanager
 def _terminated() -> Iterator[None]:
     """Let a request to terminate clear up behind what it ends."""
 
@@ -157,16 +171,29 @@ def _fail(status: int, line: str) -> int:
 
 def _flushed(status: int) -> int:
     try:
-        sys.stdout.flush()
+        with to_stdout():
+            sys.stdout.flush()
     except BrokenPipeError:
         _abandon_stdout()
         return PIPE_CLOSED
+    except OSError as error:
+        return _failed_at(error)
     return status
 
 
-def _abandon_stdout_where_it_failed(error: OSError) -> None:
-    if error.filename is None:  # printing failed, for instance on a full disk
+def _failed_at(error: OSError) -> int:
+    """Say which file could not be read or written, or that stdout could not."""
+    reason = error.strerror or str(error)
+    if error.filename == STDOUT:
         _abandon_stdout()
+        expected = "to write the results there"
+        return _fail(BAD_INPUT, complaint(STDOUT, expected, reason))
+    if error.filename is None:
+        expected = "it to do what the command asks"
+        return _fail(BAD_INPUT, complaint("system", expected, reason))
+    name = os.fsdecode(error.filename)
+    name = name if len(name) <= LONGEST_NAME else name[:60] + "..."
+    return _fail(BAD_INPUT, complaint(name, "to read or write it", reason))
 
 
 def _abandon_stdout() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from refcloud.animation.animate import Jobs
 from refcloud.cli.options import options_of
-from refcloud.cli.outputs import ready, report, say
+from refcloud.cli.outputs import OVER, ready, ready_folder, report, say
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.figure import figures, find_figure
@@ -55,7 +55,7 @@ def command() -> Command:
         "figure",
         ABOUT,
         output="name of the picture (.png, or .npy for linear light), by default"
-        " NAME.png; with --all the folder, by default figures",
+        " NAME.png; with --all the folder, by default figures" + OVER,
     )
     made.argument("NAME", "which figure (see --list)", optional=True)
     made.group("the figures", "", OPTIONS)
@@ -74,6 +74,13 @@ def run(words: Sequence[str]) -> int:
         raise ValueError(complaint("NAME", expected, got))
     if how.quick and how.final:
         raise ValueError(complaint("--final", "none beside --quick", "both"))
+    idle = ("quick", "final", "jobs") if how.list else () if how.all else ("jobs",)
+    for name in idle:
+        if getattr(how, name):
+            expected = "none beside " + ("--list" if how.list else "one figure")
+            raise ValueError(complaint(f"--{name}", expected, "one"))
+    if how.list and given.output is not None:
+        raise ValueError(complaint("--output", "none beside --list", "one"))
     quality = "final" if how.final else "quick"
     if how.list:
         return _list()
@@ -98,6 +105,7 @@ def _list() -> int:
 
 
 def _all(folder: Path, quality: str, jobs: int) -> int:
+    ready_folder(folder)
     stages, names = Stages(), list(figures())
 
     def tell(done: int) -> None:

@@ -9,11 +9,11 @@ import numpy as np
 
 from refcloud.cli.docstrings import summary
 from refcloud.cli.options import options_of
-from refcloud.cli.outputs import ready, report
+from refcloud.cli.outputs import OVER, ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.cloudmap import VoxelGrid, generate, save_voxels
-from refcloud.refusal import complaint
+from refcloud.refusal import complaint, counted
 
 ABOUT = summary(generate)
 OPTIONS = options_of(generate)
@@ -31,7 +31,8 @@ def command() -> Command:
     made = Command(
         "generate",
         ABOUT,
-        output="name of the cloud map (.npz); by default SHAPE-seedSEED-voxels.npz",
+        output="name of the cloud map (.npz); by default SHAPE-seedSEED-voxels.npz"
+        + OVER,
     )
     made.group("the cloud", "", OPTIONS)
     return made
@@ -69,7 +70,7 @@ def _refuse_idle(shape: str, chosen: Mapping[str, Any]) -> None:
 def describe(grid: VoxelGrid) -> str:
     """Say how many voxels are occupied, of how many."""
     cells = " x ".join(str(n) for n in grid.density.shape[::-1])
-    return f"{occupied(grid)} occupied voxels in a grid of {cells}"
+    return f"{counted(occupied(grid), 'occupied voxel')} in a grid of {cells}"
 
 
 def occupied(grid: VoxelGrid) -> int:

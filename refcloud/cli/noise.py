@@ -8,7 +8,7 @@ from typing import cast, get_args
 
 from refcloud.cli.docstrings import summary
 from refcloud.cli.options import options_of
-from refcloud.cli.outputs import ready, report
+from refcloud.cli.outputs import OVER, ready, report
 from refcloud.cli.parser import Command
 from refcloud.cli.progress import Stages
 from refcloud.noise_pictures import Kind, noise_picture
@@ -26,7 +26,7 @@ def command() -> Command:
     made = Command(
         "noise",
         ABOUT,
-        output="name of the picture (.png or .npy); by default KIND-VIEW.png",
+        output="name of the picture (.png or .npy); by default KIND-VIEW.png" + OVER,
     )
     made.argument("KIND", "which noise: " + ", ".join(KINDS))
     made.group("the noise", "", OPTIONS)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from refcloud.cli.options import FileOption, Option
+from refcloud.cli.outputs import say
 from refcloud.cli.values import number, value_of
 from refcloud.refusal import complaint
 
@@ -53,9 +54,15 @@ class Command:
     """One command: its arguments, its options in groups, and how both are read."""
 
     def __init__(
-        self, name: str, about: str, output: str = "", program: str = "refcloud"
+        self,
+        name: str,
+        about: str,
+        output: str = "",
+        program: str = "refcloud",
+        kind: str = "FILE",
     ) -> None:
         self.name = f"{program} {name}"
+        self._kind = kind  # what the output's name is one of, as help shows it
         self._options: dict[str, Option] = {}
         self._arguments: list[str] = []
         self._optional = 0
@@ -70,7 +77,7 @@ class Command:
         self._flags: set[str] = set(HELP)
         if output:
             self._flags |= {"-o", OUTPUT}
-            self._parser.add_argument("-o", OUTPUT, metavar="FILE", help=output)
+            self._parser.add_argument("-o", OUTPUT, metavar=kind, help=output)
 
     @property
     def flags(self) -> dict[str, str]:
@@ -121,7 +128,7 @@ class Command:
             names = self._arguments[:must]
             names += [f"[{name}]" for name in self._arguments[must:]]
             self._parser.usage = " ".join([self.name, *names, "[options]"])
-            print(self._parser.format_help(), end="")
+            say(self._parser.format_help().rstrip("\n"))
             raise SystemExit(0)
         spaced, _ = self._parser.parse_known_args(flags)
         typed = vars(spaced)
@@ -181,7 +188,7 @@ class Command:
                 continue
             values = self._values(option, words)
             if not values:
-                kind = option.metavar if option else "FILE"
+                kind = option.metavar if option else self._kind
                 raise ValueError(complaint(flag, kind, "no value"))
             flags.append(f"{OUTPUT if flag == '-o' else flag}={' '.join(values)}")
         return arguments, flags

@@ -14,7 +14,7 @@ from refcloud.cli.changed import changed
 from refcloud.cli.clouds import denser, describe, find, load, scene_of
 from refcloud.cli.docstrings import parameter_texts, summary
 from refcloud.cli.options import Option, options_of
-from refcloud.cli.outputs import ready, report
+from refcloud.cli.outputs import OVER, ready, report
 from refcloud.cli.parser import Command, Given
 from refcloud.cli.progress import Stages
 from refcloud.cli.setting import (
@@ -30,12 +30,13 @@ from refcloud.cli.setting import (
 )
 from refcloud.cli.studio_file import is_studio_file, studio_picture
 from refcloud.cloudmap import VoxelGrid
+from refcloud.extremes import refuse_bright, refuse_far
 from refcloud.image import Picture
 from refcloud.march import Mixing
 from refcloud.metaballs import Levels, Metaballs, choose_level
 from refcloud.metaballs.levels import covered_share, picture_bounds
-from refcloud.refusal import complaint
-from refcloud.render import as_drawn, render
+from refcloud.refusal import complaint, counted
+from refcloud.render import as_drawn, is_marched, render
 from refcloud.scenes import Scene, View
 
 ABOUT = summary(render)
@@ -73,7 +74,7 @@ def command() -> Command:
         "render",
         ABOUT,
         output="name of the picture (.png, or .npy for linear light); by default"
-        " WHAT.png",
+        " WHAT.png" + OVER,
     )
     made.argument(
         "WHAT",
@@ -101,7 +102,7 @@ def run(words: Sequence[str]) -> int:
     find(what)
     name = Path(what).stem
     chosen = chosen_of(given)
-    path = ready(given.named(f"{name}.png"), SUFFIXES)
+    path = ready(given.named(f"{name}.png"), SUFFIXES, inputs=[what])
     stages, notes, saving = Stages(), [], given.of(SAVING)
     if is_studio_file(what):
         with stages.stage("render"):
@@ -144,6 +145,7 @@ def prepared(
     The cloud or the scene's name, further keywords of `render`, and what to say.
     """
     what, size = given.arguments[0], size_for(chosen)
+    _refuse_extreme(given)
     if find(what):
         return of_scene(given, chosen, scene_of(what))
     suns = suns_for(given.of(SUN), False, chosen.get("scattering"))
@@ -153,6 +155,7 @@ def prepared(
     levels = cloud if isinstance(cloud, Levels) else None
     cloud = cloud.finest if isinstance(cloud, Levels) else cloud
     method = chosen.get("method")
+    _refuse_idle_mixing(given, chosen, is_marched(cloud, method))
     shown = as_drawn(cloud, method)
     camera = camera_for(given.of(CAMERA), shown, size)
     scale, mixing = given.of(DENSITY), given.of(MIXING)
@@ -175,6 +178,29 @@ def prepared(
         "mixing": Mixing(**mixing) if mixing else None,
     }
     return denser(cloud, **scale), parts, [*notes, *note]
+
+
+def _refuse_extreme(given: Given) -> None:
+    """Refuse typed places and lights beyond the ends of scenes, as they are typed."""
+    for flag in ("--eye", "--target"):
+        if flag in given.options:
+            refuse_far(flag, given.options[flag])
+    for light in given.options.get("--irradiance", ()):
+        refuse_bright("--irradiance", light)
+
+
+def _refuse_idle_mixing(given: Given, chosen: Mapping[str, Any], march: bool) -> None:
+    """Refuse a way of mixing where no ray is marched through light mixed so."""
+    for option in MIXING:
+        if option.flag not in given.options:
+            continue
+        if not march:
+            expected = "none beside --method splat"
+            advice = f"choose --method march, or leave {option.flag} out"
+            raise ValueError(complaint(option.flag, expected, "one", advice))
+        if chosen.get("scattering") == "multiple":
+            expected = "none beside --scattering multiple"
+            raise ValueError(complaint(option.flag, expected, "one"))
 
 
 def of_scene(
@@ -208,5 +234,6 @@ def level_note(levels: Levels, camera: AnyCamera, chosen: Metaballs) -> str:
         for balls, bound in zip(levels.levels, bounds, strict=True)
         if len(balls) < len(chosen) and bound <= 1.0
     ]
-    line = f"level of {len(chosen)} balls, at {100.0 * share:.3g} % of the picture"
+    size = f"{100.0 * share:.3g} % of the picture"
+    line = f"level of {counted(len(chosen), 'ball')}, at {size}"
     return f"{line}: {', '.join(fewer)}" if fewer else line

@@ -34,7 +34,12 @@ FORCE = options_of(Writing)
 
 def command() -> Command:
     """Give the command's argument."""
-    made = Command("scene", ABOUT, output="name of the file; by default NAME.toml")
+    made = Command(
+        "scene",
+        ABOUT,
+        output="name of the file; by default NAME.toml; a file of that name is kept,"
+        " unless with --force",
+    )
     made.group("the file", "", FORCE)
     made.argument("NAME", "which scene: " + ", ".join(FILES))
     return made

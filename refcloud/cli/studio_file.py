@@ -25,7 +25,7 @@ def is_studio_file(what: str) -> bool:
     if path.stat().st_size > MOST_BYTES:
         return False
     try:
-        return tomllib.loads(path.read_text("utf-8")).get("format") == FORMAT
+        return tomllib.loads(path.read_text("utf-8-sig")).get("format") == FORMAT
     except (ValueError, RecursionError):
         return False  # the reader of scene files says what is wrong
 
@@ -42,7 +42,7 @@ def studio_picture(given: Given, what: str) -> tuple[Picture, dict]:
     if others:
         expected = "none beside a file of the studio, which brings its own"
         raise ValueError(complaint(others[0], expected, "one"))
-    setup, values = scene_of(Path(what).read_text("utf-8"))
+    setup, values = scene_of(Path(what).read_text("utf-8-sig"))
     width, height = (given.options.get(side) for side in ("--width", "--height"))
     size = size_of(width, height, "final")
     recipe = setup.recipe(values, frame_of(*size))

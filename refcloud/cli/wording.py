@@ -48,8 +48,10 @@ def as_typed(line: str, flags: Mapping[str, str]) -> str:
         return line
     names = "|".join(map(re.escape, sorted(flags, key=len, reverse=True)))
     rest = re.sub(
-        rf"\b({'|'.join(BEFORE)}) (?:the )?({names})\b",
-        lambda found: f"{found[1]} {flags[found[2]]}",
+        rf"\b({'|'.join(BEFORE)}) (?:the )?({names})(?:{BETWEEN}({names}))?\b",
+        lambda found: (
+            f"{found[1]} {BETWEEN.join(flags[n] for n in found.groups()[1:] if n)}"
+        ),
         rest,
     )
     rest = re.sub(

@@ -20,7 +20,7 @@ from refcloud.image import Picture
 from refcloud.lighting import Haze, named
 from refcloud.metaballs import Metaballs, approximate, placed, prune, voxel_balls
 from refcloud.optics import ALBEDO_MAN2003, Medium
-from refcloud.refusal import within
+from refcloud.refusal import counted, within
 from refcloud.scene import Model, Motion, Own, Scene, View
 
 LAST = "cloud"
@@ -72,9 +72,9 @@ def model(declared: Declaration) -> Model:
         name = name_of(declared, number)
         clouds[name] = balls
         skipped += [*grid.skipped, *balls.skipped]
-        what = "voxels" if cloud.balls is None else "balls"
+        what = counted(len(balls), "voxel" if cloud.balls is None else "ball")
         even = ", densities not fitted" if cloud.place.even else ""
-        notes.append(f"{name}: {len(balls)} {what}{even}")
+        notes.append(f"{name}: {what}{even}")
     return Model(clouds, tuple(notes), tuple(skipped), seconds)
 
 

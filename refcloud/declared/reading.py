@@ -68,22 +68,37 @@ def load_scene(path: str | Path) -> Declaration | Changed:
     path = Path(path)
     if not path.exists():
         raise FileNotFoundError(f"{path}: expected a scene (.toml), got no such file")
-    if not path.is_file() or path.stat().st_size > MOST_BYTES:
-        raise ValueError(complaint(f"{path}", "a scene (.toml)", "no such file's kind"))
-    try:
-        table = tomllib.loads(path.read_text("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        what = " ".join(str(error).split())[:80]
-        raise ValueError(complaint(f"{path}", "a TOML file", f"{what}")) from None
+    if not path.is_file():
+        kind = "a folder" if path.is_dir() else "a device"
+        raise ValueError(complaint(f"{path}", "a scene (.toml)", kind))
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        expected = f"a scene (.toml) of at most {MOST_BYTES} bytes"
+        raise ValueError(complaint(f"{path}", expected, f"{size}"))
+    table = _parsed(path)
     with within(f"{path}: "):
         return _declared(table)
+
+
+def _parsed(path: Path) -> dict[str, Any]:
+    """Read a file's tables; editors of Windows put a mark of UTF-8 in front."""
+    try:
+        return tomllib.loads(path.read_text("utf-8-sig"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        what = " ".join(str(error).split())[:80]
+    except ValueError:  # Python's own, of decimal digits
+        what = "a whole number of thousands of digits"
+    except RecursionError:
+        what = "brackets within brackets, too deep to be read"
+    raise ValueError(complaint(f"{path}", "a TOML file", what))
 
 
 def _declared(table: dict[str, Any]) -> Declaration | Changed:
     form = table.pop("format", None), table.pop("version", None)
     if form != (FORMAT, VERSION):
         expected = f'format = "{FORMAT}", version = {VERSION}'
-        raise ValueError(complaint("format", expected, f"{form[0]!r}, {form[1]!r}"))
+        got = ", ".join(map(describe, form))
+        raise ValueError(complaint("format", expected, got))
     if "kind" in table:
         return _changed(table)
     known = (
@@ -176,6 +191,10 @@ def _made(
 ) -> Any:
     """Make a dataclass of a table; what it refuses itself is named as in the file."""
     given = checked_table(name, table, thing, also=also)
+    for key, parameter in inspect.signature(thing).parameters.items():
+        if parameter.default is parameter.empty and key not in given:
+            expected = "a value, since nothing stands for it"
+            raise ValueError(complaint(f"{name}.{key}", expected, "none"))
     with within(f"{name}."):
         return thing(**given)
 

@@ -7,7 +7,7 @@ import importlib
 import threading
 from typing import Any
 
-from refcloud.checking import complaint
+from refcloud.refusal import complaint, installing
 
 # EGL needs no display; elsewhere the system's own way opens a context off screen.
 WAYS: tuple[dict[str, str], ...] = ({"backend": "egl"}, {})
@@ -41,7 +41,8 @@ def opened() -> tuple[Any, int]:
     try:
         moderngl = importlib.import_module("moderngl")
     except ImportError:
-        expected, advice = "moderngl for the backend gl", 'pip install "refcloud[gl]"'
+        expected = "moderngl for the backend gl"
+        advice = installing("gl")
         raise ValueError(complaint("backend", expected, "none", advice)) from None
     reasons = []
     for way in WAYS:

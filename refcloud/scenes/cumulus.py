@@ -29,7 +29,7 @@ from refcloud.lighting import Haze, Look, named
 from refcloud.lighting.look import GROUND_LIGHT, SKY_LIGHT
 from refcloud.metaballs import Metaballs, approximate, errors_of_fit, placed, prune
 from refcloud.optics import Medium, Sun
-from refcloud.refusal import within
+from refcloud.refusal import counted, within
 from refcloud.scene import Model, Motion, Own, View
 from refcloud.sky import Sky
 from refcloud.transport.plans import PLANS
@@ -157,12 +157,15 @@ def model(of: Cumulus = OWN) -> Model:
             error = errors_of_fit(grid, balls).density
             voxels = int(np.count_nonzero(grid.density))
             notes.append(
-                f"{name}: {voxels} voxels, {len(balls.radii)} balls,"
+                f"{name}: {counted(voxels, 'voxel')},"
+                f" {counted(len(balls.radii), 'ball')},"
                 f" relative error of the fit {error:.3f}"
             )
             skipped += [*grid.skipped, *balls.skipped]
     total = sum(len(clouds[name].radii) for name in names[1:])
-    notes.append(f"field: {len(of.field)} clouds of {total} balls together")
+    notes.append(
+        f"field: {counted(len(of.field), 'cloud')} of {counted(total, 'ball')} together"
+    )
     return Model(clouds, tuple(notes), tuple(skipped), seconds)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any
 
+from refcloud.processes import deaf
 from refcloud.refusal import complaint
 from refcloud.studio.worker import Job, work
 
@@ -64,7 +65,8 @@ class Jobs:
         process = context.Process(
             target=self._target, args=(there,), name="refcloud studio", daemon=True
         )
-        process.start()
+        with deaf():
+            process.start()
         there.close()
         return process, here
 

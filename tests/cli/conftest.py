@@ -59,6 +59,9 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     grid = {"lower": np.zeros(3), "upper": np.ones(3)}
     write_arrays("flat.npz", "refcloud.voxels", 1, {"density": np.ones((2, 3)), **grid})
     write_arrays("other.npz", "demo", 1, {"x": np.zeros(3)})
+    np.savez("formless.npz", density=np.ones((2, 3, 4)), **grid, version=1)
+    form = {"format": "refcloud.voxels", "density": np.ones((2, 3, 4))}
+    np.savez("versionless.npz", **form, **grid)
     whole = Path("voxels.npz").read_bytes()
     Path("truncated.npz").write_bytes(whole[:-50])
     Path("text.npz").write_text("a cloud")

@@ -10,6 +10,10 @@ from pathlib import Path
 
 import pytest
 
+import refcloud.cli.animate
+import refcloud.cli.approximate
+import refcloud.cli.compare
+import refcloud.cli.figure
 import refcloud.cli.generate
 import refcloud.cli.render
 
@@ -68,7 +72,9 @@ BAD = {
     "animate man-10 --frames 3": r"moves: .* \(--turn-sun, --turn-eye, --wind\)",
     "animate demand-sky --frames 3": r"moves: .* \(none: it cannot move\)",
     "animate demand-sky --frames 3 --turn-eye 9": "--turn-eye: expected none for dem",
-    "animate man-10 --frames 3 --time 0 1": "time: expected none for man-10, which",
+    "animate man-10 --frames 3 --time 0 1": (
+        "^refcloud: --time: .* man-10, which .*: --turn-sun, --turn-eye, --wind$"
+    ),
     "animate man-10 --frames 3 --time 0": "--time: expected two numbers, got '0'",
     "animate man-10 --frames 3 --turn-eye 9 -o a.mp4": "ending in .png or .apng or",
     "animate man-10 --frames 3 --turn-eye 9 -o no/a": "a name in an existing folder",
@@ -114,7 +120,9 @@ BAD = {
     f"{RENDER} --g 0.9 --phase rayleigh": "--g: expected none beside --phase rayleigh",
     "noise worley": r"KIND: .*, got 'worley'; did you mean worley_f1\?",
     "noise perlin": r"KIND: .*, got 'perlin'; did you mean gradient\?",
-    "approximate voxels.npz --least-radius 5e3": "--overlap or --least-radius: ",
+    "approximate voxels.npz --least-radius 5e3": (
+        "--overlap or --least-radius: .*; lower --overlap or --least-radius, or use la"
+    ),
     f"{RENDER} --sigma-t 1 2": "--sigma-t: expected a number or three numbers",
     f"{RENDER} --albedo 1.1": r"--albedo: .*\[0, 1\], got 1.1",
     f"{RENDER} --background blue": "sky or transparent or three numbers, got 'blue'",
@@ -148,11 +156,49 @@ BAD = {
         "^refcloud: --ambient: .*; choose --method march, or leave --ambient out$"
     ),
     f"{RENDER} --width 5000": r"^refcloud: --width: expected at most 8\.3 megapixels",
+    f"{RENDER} --darkness-threshold 0.5": (
+        "^refcloud: --darkness-threshold: expected none beside --method splat, got one;"
+        " choose --method march, or leave --darkness-threshold out$"
+    ),
+    "render voxels.npz --scattering multiple --darkness-threshold 0.5": (
+        "^refcloud: --darkness-threshold: expected none beside --scattering multiple, g"
+    ),
+    f"{RENDER} --eye 1e300 0 0": "^refcloud: --eye: expected places and lengths of at",
+    "render man-10 --target 0 1e300 0": "^refcloud: --target: expected places and",
+    f"{RENDER} --irradiance 1e300 1 1": "^refcloud: --irradiance: expected light of at",
+    "render cumulus --irradiance 1 1e300 1": "^refcloud: --irradiance: expected light",
+    f"{RENDER} --tolerance 1.0000001": r"--tolerance: .* \[0, 1\] .*, got 1\.0000001;",
+    f"render {'n' * 5000}.npz": "^refcloud: WHAT: expected a name of at most 255 bytes",
+    f"animate {'n' * 5000}.npz": "^refcloud: WHAT: expected a name of at most 255 byt",
+    f"approximate {'n' * 5000}.npz": "^refcloud: IN.npz: expected a name of at most 2",
+    f"compare a.png {'n' * 5000}.png": "^refcloud: B: expected a name of at most 255 b",
+    "render formless.npz": "formless.npz: expected a cloud map, .*tells no format$",
+    "render versionless.npz": "versionless.npz: .*, got one that tells no version$",
+    "approximate versionless.npz": "versionless.npz: .*, got one that tells no ver",
     "render man-10 --method splat": "^refcloud: --method: expected none beside a scene",
     "animate man-10 --frames 2 --turn-sun 9 --sun-axis 0 0 0": "^refcloud: --sun-axis:",
     "approximate voxels.npz --count 0": r"--count: .* in \[1, 1000000\], got 0",
     "approximate voxels.npz --count 1000000000": r"--count: .* got 1000000000; choose",
     "approximate voxels.npz --tolerance -1": r"--tolerance: .* in \(0, 1\), got -1",
+    "approximate voxels.npz --method man --rim 2": (
+        "^refcloud: --rim: expected none beside --method man, got one; what takes it:"
+        " --method quick, standard, full$"
+    ),
+    "approximate voxels.npz --method man --rounds 3": "--rounds: expected none beside",
+    "approximate voxels.npz --method man --least-radius 2": (
+        "--least-radius: .*--method man, got one; what takes it: .*, orthogonal, subtr"
+    ),
+    "approximate voxels.npz --method subtract --overlap 3": "--overlap: .* quick, sta",
+    "approximate voxels.npz --method quick --refine-steps 3": "--refine-steps: .* full",
+    "bench --quick": "--quick: expected none without WHAT, got one",
+    "bench --json": "--json: expected none without WHAT, got one",
+    "bench --plot a.png": "--plot: expected none without WHAT, got one",
+    "bench --only balls": "--only: expected ",
+    "bench stability --peers": "--peers: expected none beside stability, which has no",
+    "figure man-10 --jobs 2": "--jobs: expected none beside one figure, got one",
+    "figure --list --quick": "--quick: expected none beside --list, got one",
+    "figure --list --jobs 2": "--jobs: expected none beside --list, got one",
+    "figure --list -o a.png": "--output: expected none beside --list, got one",
     "approximate voxels.npz --method blob": "--method: expected one of .*'blob'",
     "approximate voxels.npz --levels --count 3": "--levels: .*, got --count",
     "bench noise --plot a.jpg": "--plot: expected a name ending in .png",
@@ -161,7 +207,8 @@ BAD = {
     # pictures
     "compare a.png none.png": "none.png: ",
     "compare a.png broken.png": "broken.png: ",
-    "compare a.png voxels.npz": "expected a name ending in .png or .npy",
+    "compare a.png voxels.npz": "^refcloud: B: expected a picture, by a name ending in",
+    "compare p.jpg p.jpg": "^refcloud: A: .* in .png or .npy, got 'p.jpg'$",
     "compare a.png small.png": "small.png: expected 6 x 4 pixels of 3 .*, got 6 x 3",
     "compare a.png a.png --codes 256": r"--codes: .*\[0, 255\] \(codes\), got 256",
     # the line itself
@@ -222,17 +269,90 @@ def test_outputs_are_refused_before_the_work(name, run, here, monkeypatch) -> No
     assert run("generate", "-o", name).status == 2
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_pipes_and_links_to_nowhere_are_found_before_the_work(
+    run, here, monkeypatch
+) -> None:
+    os.mkfifo("pipe.npz")
+    Path("lost.npz").symlink_to("no/a.npz")
+    monkeypatch.setattr(refcloud.cli.generate, "generate", never)
+    for name, line in (
+        ("pipe", "expected the name of a plain file, got pipe.npz, a pipe or a device"),
+        (
+            "lost",
+            f"expected a name in an existing folder, got {here / 'no'}; create it",
+        ),
+    ):
+        status, _, err = run("generate", "-o", f"{name}.npz")
+        assert status == 2
+        assert err.startswith(f"refcloud: --output: {line}"), err
+
+
+def test_an_output_that_is_a_link_stays_one(run, here) -> None:
+    Path("there.npz").symlink_to("made.npz")
+    small = "--diameters 8 6 6 --relief 1 --voxel 1 -o there.npz"
+    assert run("generate", *small.split()).status == 0
+    assert Path("there.npz").is_symlink()
+    assert Path("made.npz").is_file()
+
+
 def test_a_closed_folder_is_found_before_the_work(run, here, monkeypatch) -> None:
-    def closed(path: Path, mode: str = "r") -> None:
+    def closed(path: Path, *how: object) -> None:
         raise PermissionError(13, "Permission denied", str(path))
 
     monkeypatch.setattr(refcloud.cli.generate, "generate", never)
     monkeypatch.setattr(refcloud.cli.render, "render", never)
     monkeypatch.setattr(Path, "open", closed)
-    for words in (["generate"], ["render", "cumulus"], ["render", "balls.npz"]):
-        status, _, err = run(*words)
+    monkeypatch.setattr(Path, "mkdir", closed)
+    monkeypatch.setattr(refcloud.cli.animate, "animate", never)
+    monkeypatch.setattr(refcloud.cli.figure, "draw_all", never)
+    animate = "animate balls.npz --frames 2 --turn-eye 9"
+    for line, kind in {
+        "generate": "file",
+        "render cumulus": "file",
+        "render balls.npz": "file",
+        animate: "file",
+        f"{animate} -o new": "folder",
+        f"{animate} -o folder.npz": "folder",
+        "figure --all -o new": "folder",
+        "figure --all": "folder",
+    }.items():
+        status, _, err = run(*line.split())
         assert status == 2, err
+        assert err.startswith(f"refcloud: --output: expected a {kind} that can be")
         assert "(Permission denied); choose another name or folder" in err
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "approximate voxels.npz --count 5 -o voxels.npz",
+        "approximate voxels.npz --count 5 -o linked.npz",
+        "approximate voxels.npz --count 5 -o b.npz --picture linked.png",
+        "approximate voxels.npz --levels -o ./voxels.npz",
+        "compare a.png small.png -o a.png",
+        "compare a.png small.png -o ./small.png",
+        "compare a.png small.png -o other.png",
+        "render voxels.npz -o linked.png",
+        "animate voxels.npz --frames 2 --turn-eye 9 -o linked.png",
+    ],
+)
+def test_no_input_is_written_over(line, run, here, monkeypatch) -> None:
+    Path("linked.npz").hardlink_to("voxels.npz")
+    Path("linked.png").symlink_to("voxels.npz")
+    Path("other.png").hardlink_to("small.png")
+    monkeypatch.setattr(refcloud.cli.approximate, "load_voxels", never)
+    monkeypatch.setattr(refcloud.cli.compare, "codes_of", never)
+    monkeypatch.setattr(refcloud.cli.render, "load", never)
+    before = contents(here)
+    status, out, err = run(*line.split())
+    assert (status, out) == (2, "")
+    assert re.fullmatch(
+        r"refcloud: --(output|picture): expected another file than those that are"
+        r" read, got \S+; choose another name\n",
+        err,
+    ), err
+    assert contents(here) == before
 
 
 @pytest.mark.parametrize("line", ["render", "animate", "noise", "compare a.png"])

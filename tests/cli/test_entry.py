@@ -37,6 +37,7 @@ def raising(error: BaseException):
         (MemoryError(), 2, "memory: expected what fits, got more than this machine"),
         (FloatingPointError("overflow"), 2, "arithmetic: expected numbers that stay"),
         (OSError(28, "No space left", "a.npz"), 2, "a.npz: expected to read or write"),
+        (OSError(11, "Try again"), 2, "system: expected it to do what the command"),
         (ValueError("x: expected\n1"), 2, "x: expected 1"),
         (KeyError("a"), 70, "defect: KeyError: 'a'; please report this command"),
     ],
@@ -83,6 +84,26 @@ def test_a_closed_pipe_is_a_quiet_end() -> None:
                 check=False,
             )
         assert (done.returncode, done.stderr) == (141, b"")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+@pytest.mark.parametrize("words", ["list", "--version", "render --help", "compare"])
+def test_a_full_disk_under_the_results_is_one_line(words, here) -> None:
+    line = words.replace("compare", "compare a.png a.png")
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "refcloud", *line.split()],
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            stdout=full,
+            stderr=subprocess.PIPE,
+            check=False,
+            text=True,
+        )
+    assert done.returncode == 2
+    assert done.stderr == (
+        "refcloud: standard output: expected to write the results there,"
+        " got No space left on device\n"
+    )
 
 
 @pytest.fixture
@@ -157,14 +178,14 @@ def test_compare_refuses_an_alpha_that_counts_by_its_own_file(line, run, alphas)
     assert status == 2
     assert err.startswith(
         "refcloud: clear.png: expected an opaque picture beside grey.png, which has no"
-        " alpha, got 1 pixels that are not opaque; draw it before a background, or"
+        " alpha, got 1 pixel that is not opaque; draw it before a background, or"
     )
 
 
 def test_compare_takes_alphas_of_both_into_account(run, alphas) -> None:
     ended = run("compare", *"clear.png opaque.png --codes 0".split())
     assert ended.status == 1
-    assert "worst pixel: row 1, column 2, 1 codes" in ended.out
+    assert "worst pixel: row 1, column 2, 1 code\n" in ended.out
     assert "alpha" not in ended.out
 
 

@@ -194,3 +194,12 @@ def test_list_names_every_scene_with_its_title(run) -> None:
 
 def test_four_pi_is_said_as_a_number(blocks) -> None:
     assert f"default {4 * math.pi:g}" in blocks("render")["--irradiance"]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_says_whether_an_old_file_is_written_over(command, run) -> None:
+    text = " ".join(run(command, "--help").out.split())
+    if "--output FILE" in text:
+        kept = command == "scene"
+        assert ("a file of that name is kept, unless with --force" in text) is kept
+        assert ("a file of that name is written over" in text) is not kept

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import get_args
 
 import pytest
 
+from refcloud import bench
 from refcloud.cli import main
 from refcloud.cli.bench import NAMES
 from refcloud.image import read_png
@@ -55,6 +57,24 @@ def test_bench_without_a_name_lists_what_there_is(
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(NAMES)
     assert all(len(line.split()) > 3 for line in lines)
+
+
+def test_a_plot_without_matplotlib_is_refused_before_the_work(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)  # as if not installed
+    monkeypatch.setattr(bench, "run", None)
+    for name in ("sunward", "tolerance"):
+        assert main(["bench", name, "--plot", str(tmp_path / "a.png")]) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err == (
+            "refcloud: --plot: expected matplotlib, got none;"
+            ' pip install ".[bench]" in refcloud\'s folder\n'
+        )
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

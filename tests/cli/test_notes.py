@@ -92,3 +92,17 @@ def test_the_level_s_note_says_which_tolerance_takes_fewer_balls(
     assert found, ended.out
     again = run(*f"render levels.npz --fov-y 2.5 {SIZE} --tolerance {found[1]}".split())
     assert re.search(r"level of 2 balls, at \S+ % of the picture\n", again.out)
+
+
+def test_one_ball_is_no_balls(run, here: Path) -> None:
+    out = run(*"approximate voxels.npz --count 1 -o one.npz".split()).out
+    assert "voxels in a grid of 4 x 3 x 2: 1 ball\n" in out
+    assert "one.npz: 1 ball\n" in run(*f"render one.npz {SIZE} -o a.png".split()).out
+    assert (
+        "balls.npz: 2 balls\n" in run(*f"render balls.npz {SIZE} -o b.png".split()).out
+    )
+    one = rc.VoxelGrid(np.ones((1, 1, 1)), [0, 0, 0], [1, 1, 1])
+    rc.save_voxels(one, "single.npz")
+    out = run(*f"render single.npz --method splat {SIZE} -o c.png".split()).out
+    assert "single.npz: 1 occupied voxel in a grid of 1 x 1 x 1\n" in out
+    assert "drawn as one ball per occupied voxel: 1 ball\n" in out

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from refcloud.cli.studio_file import is_studio_file
+from refcloud.studio.scene_file import FORMAT, VERSION
+
 SIZE = "--width 24 --height 18"
 
 
@@ -37,3 +40,9 @@ def test_what_does_not_fit_is_refused_in_one_line(run, here: Path) -> None:
         assert (status, out) == (2, "")
         assert message in err
         assert err.count("\n") == 1
+
+
+def test_a_mark_of_utf_8_hides_no_file_of_the_studio(here: Path) -> None:
+    text = f'format = "{FORMAT}"\nversion = {VERSION}\n'
+    Path("a.toml").write_text(text, "utf-8-sig")
+    assert is_studio_file("a.toml")

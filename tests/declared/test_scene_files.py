@@ -212,6 +212,15 @@ BAD = {
     KIND + '"demand"\n[parameters.hero]\nair = 1e-300': "parameters.hero.air: expected",
     KIND + '"demand"\n[parameters.hero]\nscale = 1e9': "hero.scale: .*, got 1e.09; ch",
     KIND + '"demand"\n[[parameters.field]]\nscale = 0': r"field\[0\].scale: expected",
+    KIND + '"demand"\n[[parameters.field]]\nx = 1': (
+        r"toml: parameters.field\[0\].seed: expected a value, .*, got none"
+    ),
+    HEAD + "[[cloud]]\n[camera]\ntarget = [0,0,0]": "camera.eye: .* value, .*got none",
+    HEAD + "[[cloud]]\n[[sun]]": r"sun\[0\].direction: expected a value, .* got none",
+    HEAD + "[[cloud]]\n[medium]\ng = 0": "medium.sigma_t: expected a value, .*got none",
+    "a = " + 100_000 * "[": "expected a TOML file, got brackets within brackets",
+    "a = " + 10_000 * "9": "expected a TOML file, got a whole number of thousands of",
+    f"version = 0x{10_000 * 'f'}": "got None, a number of over 60 digits",
     KIND + '"demand"\n[parameters]\nfield = 3': r"expected tables \[\[parameters.field",
 }
 
@@ -229,8 +238,22 @@ def test_what_does_not_fit_is_refused_in_one_line(text: str, tmp_path: Path) -> 
 def test_no_file_and_no_file_s_kind_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=r"expected a scene \(.toml\), got no"):
         load_scene(tmp_path / "none.toml")
-    with pytest.raises(ValueError, match=r"expected a scene \(.toml\)"):
+    with pytest.raises(ValueError, match=r"expected a scene \(.toml\), got a folder"):
         load_scene(tmp_path)
+    path = tmp_path / "long.toml"
+    path.write_text(1_000_001 * "#")
+    line = (
+        r"long.toml: expected a scene \(.toml\) of at most 1000000 bytes, got 1000001"
+    )
+    with pytest.raises(ValueError, match=line):
+        load_scene(path)
+
+
+def test_a_mark_of_utf_8_in_front_is_read_over(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(HEAD + "name = 'é'\n[[cloud]]", "utf-8-sig")
+    assert path.read_bytes().startswith(b"\xef\xbb\xbf")
+    assert load_scene(path).name == "é"
 
 
 def test_a_table_is_checked_by_annotations() -> None:

@@ -166,3 +166,20 @@ def test_ctrl_c_ends_a_tutorial_in_one_line(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         _, err = process.communicate()
     assert (process.returncode, err) == (130, "99_slow.py: interrupted\n")
+
+
+def test_a_tutorial_s_options_are_told_as_it_is_called() -> None:
+    def told(word: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, PATHS[0], word],
+            env={**os.environ, "PYTHONPATH": str(page.HERE.parent), "COLUMNS": "80"},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    call = f"python tutorials/{PATHS[0].name}"
+    shown = told("--help").stdout
+    assert shown.startswith(f"usage: {call} [options]\n")
+    assert "-o FOLDER, --output FOLDER" in shown
+    assert told("--zzz").stderr.endswith(f"; see {call} --help\n")
