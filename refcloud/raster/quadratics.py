@@ -11,6 +11,7 @@ ball times 1, x, y and x^2 + y^2 of the places.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,7 +107,7 @@ class Quadratics:
     form
         The footprint.
     beside
-        Numbers of each ball that are looked up with it, shape (N, C).
+        Numbers of each pair that are looked up with it, C times of shape (P,).
     direct
         Balls whose numbers would cancel, shape (N,): for them p is computed from each
         place's own distance to the centre.
@@ -120,7 +121,7 @@ class Quadratics:
         discs: Discs,
         strength: Array,
         form: Form,
-        beside: Array,
+        beside: Sequence[Array],
         direct: NDArray[np.bool_] | None,
         dtype: type,
     ) -> None:
@@ -138,19 +139,18 @@ class Quadratics:
         )
         # 2. A row for each pair, one more of zeros for the empty slots: the four
         #    numbers, the first again for p + shift, and what is looked up with them.
-        #    Column by column: each is one list of numbers, gathered or computed.
-        self.rows = np.empty((len(ball) + 1, 5 + beside.shape[1]), dtype)
+        self.rows = np.empty((len(ball) + 1, 5 + len(beside)), dtype)
         self.rows[-1] = 0.0
-        column = self.rows[:-1].T
+        of = self.rows[:-1].T
         scale = self.scale.take(ball)
         first = scale * (1.0 - cx * cx - cy * cy)
-        column[0], column[4] = first, first + form.shift * scale
+        of[0], of[4] = first, first + form.shift * scale
         scaled = inverse * scale
-        column[1] = 2.0 * cx * scaled
-        column[2] = 2.0 * cy * scaled
-        column[3] = -scaled * inverse
-        for number, values in enumerate(beside.T, 5):
-            column[number] = values.astype(dtype).take(ball)
+        of[1] = 2.0 * cx * scaled
+        of[2] = 2.0 * cy * scaled
+        of[3] = -scaled * inverse
+        for kind, values in enumerate(beside, 5):
+            of[kind] = values
 
     def taken(
         self,
@@ -183,16 +183,16 @@ class Quadratics:
 
         Returns
         -------
-        What is looked up with the balls, shape (slots, tiles, C).
+        What is looked up with the pairs, shape (slots, tiles, C); 0 for none.
         """
         rows = self.rows.take(pair, axis=0, mode="wrap")
         if moved is not None:
             # The same quadratic in x + dx and y + dy has other coefficients.
             dx, dy = (by.astype(self.dtype) for by in moved)
-            bx, by, c = rows[..., 1], rows[..., 2], rows[..., 3]
+            first, bx, by, c, shifted = (rows[..., k] for k in range(5))
             constant = bx * dx + by * dy + c * (dx * dx + dy * dy)
-            rows[..., 0] += constant
-            rows[..., 4] += constant
+            first += constant
+            shifted += constant
             bx += 2.0 * dx * c
             by += 2.0 * dy * c
         np.matmul(rows[..., :4], places.ahead, out=v)

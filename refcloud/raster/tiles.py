@@ -8,9 +8,9 @@ the front, with F_k the light that passes all balls nearer than ball k,
 so that a tile needs no order of blending, only running sums of log T over its list.
 `composite` works on many tiles and a few balls of each at a time, in arrays that stay
 in the processor's cache. Two products of small matrices do most of the work: footprints
-(`quadratics`), and, summing by parts, colours:
+(`quadratics`), and, summing by parts, colours, with s_{-1} = 0:
 
-    c = s_0 + sum_k (s_k - s_{k-1}) F_k - s_end F_end
+    c = sum_k (s_k - s_{k-1}) F_k - s_end F_end
 
 Every product is smaller than 2^18, from where OpenBLAS may use more threads: the same
 bits whatever their number.
@@ -110,8 +110,15 @@ class Compositor:
         self.beer = law == "beer"
         deep = np.minimum(tau, DEEPEST[dtype])
         strength = deep * PER_E if self.beer else -np.expm1(-tau)
+        # How each ball's colour differs from that of the ball before it in its list.
+        self.shows = [colour.take(lists.ball) for colour in colours.T]
+        change = []
+        for shows in self.shows:
+            change.append(np.empty_like(shows))
+            np.subtract(shows[1:], shows[:-1], out=change[-1][1:])
+            change[-1][lists.first] = shows[lists.first]
         self.footprints = Quadratics(
-            lists, discs, strength, FORMS[name], colours, direct, dtype
+            lists, discs, strength, FORMS[name], change, direct, dtype
         )
         # Room to work in, the same one for all tiles; what is not used costs nothing.
         self.samples = CACHED // np.dtype(dtype).itemsize
@@ -163,7 +170,9 @@ class Compositor:
                 few = max(MOST_SLOTS, min(WORTH // (n * size), 4 * MOST_SLOTS))
                 slots = min(self.samples // (n * size), few, int(left.max()))
                 k = np.arange(slots)[:, None]
-                pair = np.where(k < left, self.lists.first[tiles[live]] + slot + k, -1)
+                pair = self.lists.first[tiles[live]] + slot + k
+                if slots > left.min():
+                    pair = np.where(k < left, pair, -1)
 
                 # 2. What each takes of the light at each place: log2 T, or T - 1.
                 shape, every = (slots, n, size), slots * n * size
@@ -171,7 +180,7 @@ class Compositor:
                 taken, v = F[1:], self.space[1, :every].reshape(shape)
                 zero = self.zeros[:every].reshape(shape)
                 aside = None if moved is None else (moved[0][live], moved[1][live])
-                shown = self.footprints.taken(
+                change = self.footprints.taken(
                     pair, tiles[live], at, v, taken, zero, aside
                 )
 
@@ -187,12 +196,9 @@ class Compositor:
                     for j in range(1, slots):
                         taken[j] *= taken[j - 1]
 
-                # 4. Colours, by parts; an empty slot is black.
-                shown = shown.transpose(1, 2, 0)
-                change = np.empty((n, self.channels, slots + 1), self.dtype)
-                change[..., 0], change[..., -1] = shown[..., 0], -shown[..., -1]
-                np.subtract(shown[..., 1:], shown[..., :-1], out=change[..., 1:-1])
-                more = np.matmul(change, F.transpose(1, 0, 2))
+                # 4. Colours, by parts; in an empty slot nothing changes.
+                change = np.ascontiguousarray(change.transpose(1, 2, 0))
+                more = np.matmul(change, F[:-1].transpose(1, 0, 2))
                 if slot == 0:
                     added = more
                 else:
@@ -207,7 +213,7 @@ class Compositor:
                 # 5. Lists at their end, and tiles that nothing passes, are complete.
                 slot += slots
                 left -= slots
-                done = (left <= 0) | (through.max(axis=1) <= least)
+                done = (left <= 0) | ~(through > least).any(axis=1)
                 if done.all():
                     unseen[live] = np.maximum(left, 0)
                     light[live], clear[live] = added, through
@@ -219,6 +225,11 @@ class Compositor:
                     kept = ~done
                     live, added, through = live[kept], added[kept], through[kept]
                     total = total[kept]
+        # 6. Where a list ends or is cut off, the last ball's colour ends too.
+        last = self.lists.first[tiles] + counts - unseen - 1
+        for channel, shows in enumerate(self.shows):
+            ends = shows.take(last).astype(self.dtype)
+            light[:, channel] -= ends[:, None] * clear
         return Result(light, clear, unseen)
 
 
