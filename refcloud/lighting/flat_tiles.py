@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from refcloud.conventions import Array
 from refcloud.lighting.look import Look
 from refcloud.lighting.seen import Seen
 from refcloud.lighting.tints import tinted
-from refcloud.raster.quadratics import EXACT, Floats, Moved, cancelling
+from refcloud.raster.quadratics import EXACT, Floats, cancelling
 from refcloud.raster.tile_lists import Discs, TileLists, Whole
 from refcloud.raster.tiles import Compositor, pixel_places
 
@@ -137,15 +138,20 @@ class FlatTiles:
             for tau, lights, balls in zip(flat.tau, flat.lights, measured, strict=True)
         ]
 
+    def on(self, lists: TileLists) -> FlatTiles:
+        """Give the same balls for other lists."""
+        other = copy.copy(self)
+        other.compositors = [each.on(lists) for each in self.compositors]
+        return other
+
     def at(
         self,
         places: tuple[Array, Array],
         least: float,
         which: Whole | None = None,
-        moved: Moved = None,
     ) -> Drawn:
         """Composite some tiles at given places, as `Compositor.at`."""
-        found = [each.at(places, least, which, moved) for each in self.compositors]
+        found = [each.at(places, least, which) for each in self.compositors]
         if len(found) == 1:
             return Drawn(found[0].light, found[0].clear[:, None], found[0].unseen)
         light = np.concatenate([each.light for each in found], axis=1)

@@ -47,7 +47,7 @@ class SparseTiles:
         behind: float,
     ) -> None:
         self.lists, self.least, self.behind = lists, least, behind
-        self.tiles = FlatTiles(lists, flat, np.float32, direct)
+        self.tiles, self.discs = FlatTiles(lists, flat, np.float32, direct), flat.discs
         count, groups = len(lists.count), len(flat.groups)
         self.lights = sum(len(lights) for lights in flat.lights)
         self.drawn = Drawn(
@@ -173,9 +173,9 @@ class SparseTiles:
     def _draw_quarters(self, tile: Whole, part: Whole) -> None:
         """Draw all pixels of some quarters of tiles."""
         light, clear = self.drawn.light, self.drawn.clear
-        pixels, places, middles = between.quarters()
-        moved = middles[0][part], middles[1][part]
-        found = self.tiles.at(places, self.least, tile, moved)
+        pixels, places = between.quarters()
+        quarters = self.lists.quarters(tile, part, self.discs)
+        found = self.tiles.on(quarters).at(places, self.least)
         at, tile = pixels[part][:, None], tile[:, None, None]
         light[tile, np.arange(self.lights)[:, None], at] = found.light
         clear[tile, np.arange(clear.shape[1])[:, None], at] = found.clear

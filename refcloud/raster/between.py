@@ -141,13 +141,13 @@ def samples_for(step: float) -> Lattice:
 
 
 @functools.cache
-def quarters() -> tuple[Whole, tuple[Array, Array], tuple[Array, Array]]:
+def quarters() -> tuple[Whole, tuple[Array, Array]]:
     """Set up the quarters of a tile, row after row, to be drawn where it is not smooth.
 
     Returns
     -------
-    Numbers of their pixels, shape (4, 64); x and y of these from a quarter's middle,
-    the same in each, shape (64,); x and y of the middles from the tile's, shape (4,).
+    Numbers of their pixels, shape (4, 64); and x and y of these from a quarter's
+    middle, the same in each, shape (64,).
     """
     half = SIDE // 2
     row, column = np.divmod(np.arange(half * half), half)
@@ -156,7 +156,6 @@ def quarters() -> tuple[Whole, tuple[Array, Array], tuple[Array, Array]]:
     return (
         (half * j[:, None] + row) * SIDE + half * i[:, None] + column,
         (column - middle, row - middle),
-        (half * (i - 0.5), half * (j - 0.5)),
     )
 
 

@@ -18,6 +18,7 @@ bits whatever their number.
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
 from dataclasses import dataclass
@@ -28,7 +29,7 @@ from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.raster.footprint import Law, Name
-from refcloud.raster.quadratics import FORMS, Floats, Moved, Places, Quadratics
+from refcloud.raster.quadratics import FORMS, Floats, Places, Quadratics
 from refcloud.raster.tile_lists import SIDE, Discs, TileLists, Whole
 
 CACHED = 1 << 20  # bytes composited at a time: about what the processor's cache holds
@@ -110,27 +111,26 @@ class Compositor:
         self.beer = law == "beer"
         deep = np.minimum(tau, DEEPEST[dtype])
         strength = deep * PER_E if self.beer else -np.expm1(-tau)
-        # How each ball's colour differs from that of the ball before it in its list.
-        self.shows = [colour.take(lists.ball) for colour in colours.T]
-        change = []
-        for shows in self.shows:
-            change.append(np.empty_like(shows))
-            np.subtract(shows[1:], shows[:-1], out=change[-1][1:])
-            change[-1][lists.first] = shows[lists.first]
         self.footprints = Quadratics(
-            lists, discs, strength, FORMS[name], change, direct, dtype
+            lists, discs, strength, FORMS[name], list(colours.T), direct, dtype
         )
         # Room to work in, the same one for all tiles; what is not used costs nothing.
         self.samples = CACHED // np.dtype(dtype).itemsize
         self.space = np.empty((2, 2 * self.samples), dtype)
         self.zeros = zeros(dtype)
 
+    def on(self, lists: TileLists) -> Compositor:
+        """Give a compositor of the same balls for other lists; it shares the room."""
+        other = copy.copy(self)
+        other.lists, other.footprints = lists, copy.copy(self.footprints)
+        other.footprints.use(lists)
+        return other
+
     def at(
         self,
         places: tuple[Array, Array],
         least: float,
         which: Whole | None = None,
-        moved: Moved = None,
     ) -> Result:
         """Composite tiles from the front.
 
@@ -143,8 +143,6 @@ class Compositor:
             A tile through which no place lets more than this share pass is complete.
         which
             Numbers of the tiles; None for all.
-        moved
-            How far the places are moved in each of these tiles, x and y of shape (T,).
 
         Returns
         -------
@@ -179,10 +177,7 @@ class Compositor:
                 F = self.space[0, : every + n * size].reshape(slots + 1, n, size)
                 taken, v = F[1:], self.space[1, :every].reshape(shape)
                 zero = self.zeros[:every].reshape(shape)
-                aside = None if moved is None else (moved[0][live], moved[1][live])
-                change = self.footprints.taken(
-                    pair, tiles[live], at, v, taken, zero, aside
-                )
+                change = self.footprints.taken(pair, tiles[live], at, v, taken, zero)
 
                 # 3. F, counted from this slot on: what passes the balls before.
                 F[0] = 1.0
@@ -227,7 +222,7 @@ class Compositor:
                     total = total[kept]
         # 6. Where a list ends or is cut off, the last ball's colour ends too.
         last = self.lists.first[tiles] + counts - unseen - 1
-        for channel, shows in enumerate(self.shows):
+        for channel, shows in enumerate(self.footprints.looked_up):
             ends = shows.take(last).astype(self.dtype)
             light[:, channel] -= ends[:, None] * clear
         return Result(light, clear, unseen)

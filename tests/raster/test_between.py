@@ -81,10 +81,12 @@ def test_samples_are_equally_spaced_from_tile_to_tile(n: int) -> None:
 
 
 def test_quarters_are_all_pixels_once() -> None:
-    pixels, at, middles = quarters()
+    pixels, at = quarters()
     assert sorted(pixels.ravel().tolist()) == list(range(PIXELS))
     for axis in range(2):
-        moved = middles[axis][:, None] + at[axis]
+        part = np.arange(4) // 2 if axis else np.arange(4) % 2
+        middle = SIDE // 2 * (part - 0.5)
+        moved = middle[:, None] + at[axis]
         np.testing.assert_array_equal(moved, pixel_places()[axis][pixels])
 
 
