@@ -23,7 +23,7 @@ NODES = 6  # along a tile's edge, where balls are so wide that these serve
 # the tiles rise within so many steps that `GUESS` over these, to the power of 2.4, is
 # allowed: else too many are drawn again. With `SPARE` times these steps few of them
 # are. Measured on the benchmark's scenes; a wrong guess costs time alone.
-LEAST_NODES, GUESS, GUESSED_POWER, SPARE = 4.0 * LEAST_RISE, 0.2, 2.4, 2.4
+LEAST_NODES, GUESS, GUESSED_POWER, SPARE = 4.0 * LEAST_RISE, 0.2, 2.4, 1.9
 FEW = 10  # balls of a tile, to which filling it up costs more than drawing its pixels
 
 

@@ -13,10 +13,9 @@ from refcloud.raster.between import (
     FAR,
     HANDED_ON,
     LEAST_RISE,
-    LEAST_SAMPLES,
-    MOST_SAMPLES,
     ONE_SIDED,
     PER_FOURTH,
+    SIZES,
     Fourth,
     Samples,
     inside,
@@ -29,8 +28,7 @@ from refcloud.raster.tile_lists import PIXELS, SIDE, Discs, parts
 from refcloud.raster.tiles import composite, pixel_places
 
 SIZE = 80, 64  # 5 x 4 tiles, 3 x 2 of them inside
-COUNTS = range(LEAST_SAMPLES, MOST_SAMPLES + 1)
-every_count = pytest.mark.parametrize("n", COUNTS)
+every_count = pytest.mark.parametrize("n", SIZES)
 
 
 def joined(grid):
@@ -94,13 +92,13 @@ def test_a_lattice_has_steps_up_to_the_one_asked_for() -> None:
     for step in (0.1, 2.0, 2.1, 3.0, 3.9, 4.0, 100.0):
         found = samples_for(step)
         assert found.step <= max(step, least_step())
-        assert found.n == LEAST_SAMPLES or lattice(found.n - 1).step > step
+        assert all(lattice(n).step > step for n in SIZES if n < found.n)
 
 
 def test_what_samples_beside_a_tile_hand_on() -> None:
     # At a pixel, the weights of samples outside the tile, summed: worst at a corner.
     worst = []
-    for n in COUNTS:
+    for n in SIZES:
         every = np.abs(lattice(n).to_pixels)
         across, own = every.sum(axis=0), every[BEYOND:-BEYOND].sum(axis=0)
         worst.append((np.outer(across, across) - np.outer(own, own)).max())
@@ -110,7 +108,7 @@ def test_what_samples_beside_a_tile_hand_on() -> None:
 def test_what_errors_of_one_sign_make_between_samples() -> None:
     # The worst errors from 0 to 1 are 1 where the pixel's weight is positive.
     made = []
-    for n in COUNTS:
+    for n in SIZES:
         weights = np.einsum("ij,kl->jlik", lattice(n).to_pixels, lattice(n).to_pixels)
         more = np.maximum(weights, 0.0).sum(axis=(2, 3)).max()
         less = np.minimum(weights, 0.0).sum(axis=(2, 3)).min()
@@ -143,7 +141,7 @@ def test_what_counts_for_the_pixels_of_a_half(n: int) -> None:
     st.sampled_from(["chord", "profile"]),
     st.sampled_from(["beer", "linear"]),
     st.booleans(),
-    st.sampled_from(COUNTS),
+    st.sampled_from(SIZES),
 )
 def test_fourth_differences_bound_the_error(
     seed, count, power, depth, name, law, striped, n
