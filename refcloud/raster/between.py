@@ -183,8 +183,8 @@ class Samples:
         self.grid, self.box, self.lights = grid, box, lights
         across, down = box[1] - box[0], box[3] - box[2]
         channels, n = lights + clears, grid.n
-        self.plane = np.zeros((channels, down * n, across * n), np.float32)
-        self.plane[lights:] = 1.0
+        self.plane = np.empty((channels, down * n, across * n), np.float32)
+        self.plane[:lights], self.plane[lights:] = 0.0, 1.0
         tiled = self.plane.reshape(channels, down, n, across, n)
         self.tiles = tiled.transpose(0, 1, 3, 2, 4)  # (C, down, across, n, n)
         around = (grid.around, grid.around)
