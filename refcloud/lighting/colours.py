@@ -59,18 +59,18 @@ def ball_colours(lit: LitMetaballs, camera: AnyCamera) -> Array:
     Source: paper M, eq 26 and 29; E20, E22, E23, E26.
     """
     balls, medium = lit.balls, lit.medium
-    colours = np.empty((len(balls.radii), len(lit.suns) + 1, 3))
+    # In memory channel by channel: each is one list of numbers.
+    colours = np.empty((len(lit.suns) + 1, 3, len(balls.radii))).transpose(2, 0, 1)
     toward_eye = _toward_eye(balls.centers, camera)
     for s, sun in enumerate(lit.suns):
         # The sun's light travels along -direction and leaves toward the eye.
         x, y, z = toward_eye.T
         a, b, c = sun.direction
         cos_theta = np.clip(-(x * a + y * b + z * c), -1.0, 1.0)
-        scattered = phase(medium, cos_theta)[:, None] * medium.albedo_rgb
-        colours[:, s] = scattered * lit.light[s] * lit.gain
+        colours[:, s] = phase(medium, cos_theta)[:, None] * lit.scattered[s]
         if lit.glow is not None:
             colours[:, s] += lit.glow[s]
-    colours[:, -1] = medium.albedo_rgb * lit.ambient  # what is absorbed is not seen
+    colours[:, -1] = lit.reflected  # what is absorbed is not seen
     return colours
 
 

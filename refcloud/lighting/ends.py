@@ -46,7 +46,12 @@ def refuse_extreme(
     for sun in suns:
         refuse_bright("suns", sun.irradiance)
     if camera is not None:
-        refuse_far("camera", [camera.eye, camera.target])
-        if isinstance(camera, OrthographicCamera):
-            refuse_far("camera", camera.height_of_view)
-            refuse_small("camera", camera.height_of_view)
+        refuse_extreme_eye(camera)
+
+
+def refuse_extreme_eye(camera: AnyCamera) -> None:
+    """Refuse an eye beyond the ends of scenes, as `refuse_extreme`."""
+    refuse_far("camera", [camera.eye, camera.target])
+    if isinstance(camera, OrthographicCamera):
+        refuse_far("camera", camera.height_of_view)
+        refuse_small("camera", camera.height_of_view)

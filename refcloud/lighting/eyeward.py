@@ -17,7 +17,7 @@ from refcloud.checking import checked
 from refcloud.conventions import Array, Observer, Range, Seed, Shape, Skipped, Tolerance
 from refcloud.lighting.certified_tiles import certified_tiles
 from refcloud.lighting.colours import Haze
-from refcloud.lighting.ends import refuse_extreme
+from refcloud.lighting.ends import refuse_extreme_eye
 from refcloud.lighting.flat_tiles import flat_balls
 from refcloud.lighting.fronts import fill, half_width, hull_of
 from refcloud.lighting.hidden import without_faint
@@ -79,7 +79,7 @@ def eyeward(
     Source: paper M, eq 28 and 29, L10, L11; E04, E25, E26.
     """
     watch = observe or (lambda name, value: None)
-    refuse_extreme(lit.balls, lit.suns, lit.medium, camera)
+    refuse_extreme_eye(camera)
     size = (camera.height, camera.width)
     if background is not None and background.shape != (*size, 3):
         raise ValueError(
@@ -100,26 +100,28 @@ def eyeward(
         FAINT * tolerance,
     )
     skipped += rows
+    left = tolerance - sum(row.bound for row in rows)
 
     drawn = seen.order[visible[seen.order]]
     flat, look = flat_balls(seen, drawn), lit.look
     smooth = not (look.light_reach > 0.0 or look.erosion > 0.0)
     by_products = smooth and lit.balls.kernel == "wyvill"
+    shows = flat.shown if by_products else [(channel, 1.0) for channel in range(3)]
 
-    # 2. What the tolerance goes to. Behind pixels that let no more than `least` pass,
-    # all together changes less than that share: it is between 0 and the brightest, or
-    # off the middle of what it can be by less, seen through them.
-    share, digits, width = 1.0 - FAINT, 0.0, brightest
+    # 2. What the rest of the tolerance goes to. Behind pixels that let no more than
+    # `least` pass, all together changes less than the front's part: it is between 0 and
+    # the brightest, or off the middle of what it can be by less, seen through them.
+    front, digits, width = left, 0.0, brightest
     low = high = np.zeros(3)
     if by_products:
-        share = OPAQUE_OF_NODES if tolerance >= NODES_FROM else OPAQUE
+        front = (OPAQUE_OF_NODES if tolerance >= NODES_FROM else OPAQUE) * tolerance
     elif tolerance > 0.0:
         digits = digits_of(seen, drawn, brightest, tolerance)
         low, high = hull_of(seen, background)
-        share -= DIGITS  # whatever comes of it: rows of several clouds add up
-        width = max(half_width(low, high, over), share * tolerance)
-    least = max(share * tolerance / width, ROUNDED)
-    most = (1.0 - FAINT - share) * tolerance
+        front -= DIGITS * tolerance  # whatever comes of it: rows of clouds add up
+        width = max(half_width(low, high, over), front)
+    least = max(front / width, ROUNDED)
+    most = left - front
 
     # 3. Light as a field, and the noise that erodes footprints.
     shading, rows = shading_of(seen, seed, observe, single=digits > 0.0)
@@ -145,7 +147,7 @@ def eyeward(
             found = shaded.draw(lists, least)
             if tolerance > 0.0:
                 fill(found, flat.groups, least, low, high, over)
-        canvas.paint(lists, flat.groups, found.light, found.clear)
+        canvas.paint(lists, flat.groups, found.light, found.clear, shows)
         hidden += PIXELS * int(found.unseen.sum()) + found.closed
         looked += PIXELS * len(lists.ball)
     skipped += shaded.rows()

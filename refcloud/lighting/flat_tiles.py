@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from refcloud.conventions import Array
 from refcloud.lighting.look import Look
 from refcloud.lighting.seen import Seen
-from refcloud.raster.quadratics import EXACT, Floats, Moved, cancelling
+from refcloud.lighting.tints import tinted
+from refcloud.raster.quadratics import EXACT, Floats, cancelling
 from refcloud.raster.tile_lists import Discs, TileLists, Whole
 from refcloud.raster.tiles import Compositor, pixel_places
 
@@ -28,8 +29,11 @@ class Flat:
         Where they are in the picture.
     tau
         By group of channels, each of shape (N,).
-    colours
-        Shape (N, 3).
+    lights
+        What each ball shows where it is opaque, by group, each of shape (L, N).
+    shown
+        Of each channel the number of its light, counted over all groups, and the share
+        of that which it shows.
     groups
         Channels of one extinction each.
     look
@@ -38,7 +42,8 @@ class Flat:
 
     discs: Discs
     tau: Sequence[Array]
-    colours: Array
+    lights: Sequence[Array]
+    shown: Sequence[tuple[int, float]]
     groups: Sequence[Sequence[int]]
     look: Look
 
@@ -56,7 +61,7 @@ class Drawn(NamedTuple):
     Attributes
     ----------
     light
-        What the balls add, shape (T, 3, S).
+        What the balls add, shape (T, L, S): of each light, or channel.
     clear
         Share of the background that passes, by group, shape (T, G, S).
     unseen
@@ -78,29 +83,23 @@ class Drawn(NamedTuple):
 def flat_balls(seen: Seen, drawn: Whole) -> Flat:
     """Collect what tiles need of the balls that are drawn, near to far."""
     groups = seen.channel_groups()
+    colours = seen.flat_colours().T.take(drawn, axis=1)
+    lights: list[Array] = []
+    shown, before = [(0, 0.0)] * len(colours), 0
+    for channels in groups:
+        mine = tinted(colours[channels])
+        for channel, (number, share) in zip(channels, mine.shown, strict=True):
+            shown[channel] = before + number, share
+        before += len(mine.lights)
+        lights.append(mine.lights)
     return Flat(
         Discs(seen.x.take(drawn), seen.y.take(drawn), seen.radius.take(drawn)),
         [seen.tau[channels[0]].take(drawn) for channels in groups],
-        seen.flat_colours().take(drawn, axis=0),
+        lights,
+        shown,
         groups,
         seen.lit.look,
     )
-
-
-def one_ball_a_pair(lists: TileLists, flat: Flat) -> tuple[TileLists, Flat]:
-    """Give a few tiles' lists and their balls alone, one for each pair.
-
-    What is computed for each ball then costs as much as these tiles have pairs, however
-    many balls the picture has.
-    """
-    ball, discs = lists.ball, flat.discs
-    theirs = dataclasses.replace(
-        flat,
-        discs=Discs(discs.x.take(ball), discs.y.take(ball), discs.radius.take(ball)),
-        tau=[tau.take(ball) for tau in flat.tau],
-        colours=flat.colours.take(ball, axis=0),
-    )
-    return dataclasses.replace(lists, ball=np.arange(len(ball))), theirs
 
 
 class FlatTiles:
@@ -124,39 +123,38 @@ class FlatTiles:
         dtype: type = np.float64,
         direct: Sequence[NDArray[np.bool_]] | None = None,
     ) -> None:
-        self.lists, self.groups, self.dtype = lists, flat.groups, dtype
         measured = flat.cancelling(dtype, EXACT) if direct is None else direct
         self.compositors = [
             Compositor(
                 lists,
                 flat.discs,
                 tau,
-                flat.colours[:, channels],
+                lights.T,
                 name=flat.look.footprint,
                 law=flat.look.transmittance,
                 dtype=dtype,
                 direct=balls,
             )
-            for tau, channels, balls in zip(
-                flat.tau, flat.groups, measured, strict=True
-            )
+            for tau, lights, balls in zip(flat.tau, flat.lights, measured, strict=True)
         ]
+
+    def on(self, lists: TileLists) -> FlatTiles:
+        """Give the same balls for other lists."""
+        other = copy.copy(self)
+        other.compositors = [each.on(lists) for each in self.compositors]
+        return other
 
     def at(
         self,
         places: tuple[Array, Array],
         least: float,
         which: Whole | None = None,
-        moved: Moved = None,
     ) -> Drawn:
         """Composite some tiles at given places, as `Compositor.at`."""
-        found = [each.at(places, least, which, moved) for each in self.compositors]
+        found = [each.at(places, least, which) for each in self.compositors]
         if len(found) == 1:
             return Drawn(found[0].light, found[0].clear[:, None], found[0].unseen)
-        count, size = found[0].clear.shape
-        light = np.empty((count, 3, size), self.dtype)
-        for channels, each in zip(self.groups, found, strict=True):
-            light[:, channels] = each.light
+        light = np.concatenate([each.light for each in found], axis=1)
         clear = np.stack([each.clear for each in found], axis=1)
         unseen = np.sum([each.unseen for each in found], axis=0)
         return Drawn(light, clear, unseen)

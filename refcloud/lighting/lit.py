@@ -9,6 +9,7 @@ from typing import Annotated
 from refcloud.checking import check_fields
 from refcloud.conventions import Array, Range, Shape, Skipped
 from refcloud.lighting.depths import ball_depths
+from refcloud.lighting.ends import refuse_extreme
 from refcloud.lighting.gain import gain_of
 from refcloud.lighting.look import Look
 from refcloud.metaballs import Metaballs
@@ -66,6 +67,7 @@ class LitMetaballs:
                 f"glow: expected shape {self.light.shape}, that of light,"
                 f" got {self.glow.shape}"
             )
+        refuse_extreme(self.balls, self.suns, self.medium)
 
     # What no eye changes is computed for the first one and kept for all others (L15).
 
@@ -73,6 +75,20 @@ class LitMetaballs:
     def gain(self) -> Array:
         """What the scattering rule puts on top of albedo times phase, shape (N, 3)."""
         return gain_of(self.balls, self.medium, self.look)
+
+    @functools.cached_property
+    def scattered(self) -> Array:
+        """Each sun's light times albedo and gain, to be shared out, shape (S, N, 3).
+
+        In memory channel by channel, as `ball_colours` goes on with it.
+        """
+        share = self.medium.albedo_rgb[:, None] * self.gain.T
+        return (self.light.transpose(0, 2, 1) * share).transpose(0, 2, 1)
+
+    @functools.cached_property
+    def reflected(self) -> Array:
+        """The ambient light times albedo, shape (N, 3), channel by channel."""
+        return (self.medium.albedo_rgb[:, None] * self.ambient.T).T
 
     @functools.cached_property
     def depths(self) -> dict[float, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,17 +82,18 @@ class Seen:
 
         Only balls of one colour each show that; others vary over their footprints.
         """
-        color = self._all_lights()
+        color = self.all_lights
         if (self.clear == 1.0).all():  # no air
             return color
         return color * self.clear[:, None] + self.air * (1.0 - self.clear)[:, None]
 
     def brightest(self) -> float:
         """Give the largest colour of any ball or of the air: no pixel passes it."""
-        return max(float(self._all_lights().max(initial=0.0)), float(self.air.max()))
+        return max(float(self.all_lights.max(initial=0.0)), float(self.air.max()))
 
-    def _all_lights(self) -> Array:
-        """Sum what the ambient light and each sun show of every ball, shape (N, 3)."""
+    @functools.cached_property
+    def all_lights(self) -> Array:
+        """What the ambient light and each sun show of every ball, summed, (N, 3)."""
         color = self.colours[:, -1]
         for s in range(self.colours.shape[1] - 1):
             color = color + self.colours[:, s]

@@ -42,6 +42,7 @@ class Canvas:
         groups: Sequence[Sequence[int]],
         light: Floats,
         clear: Floats,
+        shown: Sequence[tuple[int, float]] = ((0, 1.0), (1, 1.0), (2, 1.0)),
     ) -> None:
         """Write finished tiles.
 
@@ -52,9 +53,12 @@ class Canvas:
         groups
             Channels of one transmittance each.
         light
-            What is added, shape (T, 3, pixels of a tile).
+            What is added, shape (T, L, pixels of a tile): of each light.
         clear
             Share of what lies behind that passes, shape (T, G, pixels of a tile).
+        shown
+            Of each channel the number of its light, and the share of that which it
+            shows.
         """
         where = lists.row, lists.column
         squares, through = (
@@ -63,10 +67,13 @@ class Canvas:
         for group, channels in enumerate(groups):
             passed = through[:, group]
             for channel in channels:
-                shown = squares[:, channel]
+                number, share = shown[channel]
+                added = squares[:, number]
+                if share != 1.0:
+                    added = added * share
                 if self.over:
-                    shown = shown + passed * self.tiles[channel][where]
-                self.tiles[channel][where] = shown
+                    added = added + passed * self.tiles[channel][where]
+                self.tiles[channel][where] = added
         if not self.over:
             alpha = 1.0 - through[:, 0]
             if len(groups) > 1:  # the mean over the channels

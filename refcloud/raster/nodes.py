@@ -36,6 +36,8 @@ class Nodes:
         Nodes along an edge.
     places
         x and y from the tile's middle, pixels, shape (n^2,), row after row.
+    coefficients
+        Values along a line of nodes to those of T_0 to T_{n-1}, shape (n, n).
     spread
         Values at nodes to values at pixels, shape (n^2, 256).
     tail
@@ -44,6 +46,7 @@ class Nodes:
 
     n: int
     places: tuple[Array, Array]
+    coefficients: Floats
     spread: Floats
     tail: Floats
 
@@ -73,6 +76,18 @@ class Nodes:
         """
         last = np.matmul(values, self.tail.astype(values.dtype))
         return PER_TAIL * np.abs(last, out=last).sum(axis=2).max(axis=1)
+
+    def spread_to(self, along: Array) -> Floats:
+        """Give the matrix from values at nodes to those on a grid, (n^2, m^2).
+
+        Parameters
+        ----------
+        along
+            Where the grid's lines are, from the tile's middle, pixels, shape (m,).
+        """
+        angle = np.arccos(along / (SIDE / 2))
+        to_lines = np.cos(angle[:, None] * np.arange(self.n)) @ self.coefficients
+        return np.kron(to_lines, to_lines).T
 
     def at_pixels(self, values: Floats) -> Floats:
         """Evaluate the polynomial at the pixels' centres: (T, C, n^2) to (T, C, 256).
@@ -110,6 +125,7 @@ def nodes(n: int) -> Nodes:
     return Nodes(
         n,
         (np.tile(at, n), np.repeat(at, n)),
+        coefficients,
         np.ascontiguousarray(np.kron(to_pixels, to_pixels).T),
         np.ascontiguousarray(both[largest >= n - LAST].T),
     )

@@ -11,6 +11,7 @@ ball times 1, x, y and x^2 + y^2 of the places.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +23,6 @@ from refcloud.raster.footprint import PER_AXIS, Law
 from refcloud.raster.tile_lists import SIDE, Discs, TileLists, Whole
 
 Floats = NDArray[np.floating]
-Moved = tuple[Array, Array] | None
 EXACT = 1e-13  # of an opacity: what rounding may change in float64
 
 
@@ -106,7 +106,8 @@ class Quadratics:
     form
         The footprint.
     beside
-        Numbers of each ball that are looked up with it, shape (N, C).
+        Numbers of each ball that are looked up with it, C times of shape (N,): of each
+        pair the change from the ball before it in its list.
     direct
         Balls whose numbers would cancel, shape (N,): for them p is computed from each
         place's own distance to the centre.
@@ -120,37 +121,42 @@ class Quadratics:
         discs: Discs,
         strength: Array,
         form: Form,
-        beside: Array,
+        beside: Sequence[Array],
         direct: NDArray[np.bool_] | None,
         dtype: type,
     ) -> None:
-        self.lists, self.discs, self.form, self.dtype = lists, discs, form, dtype
+        self.discs, self.form, self.dtype, self.beside = discs, form, dtype, beside
         self.direct = direct if direct is not None and direct.any() else None
         # With v = scale p the strength and the leading factor are in already.
         self.scale = (strength * form.leading) ** (1.0 / (form.power + 1.0))
+        self.inverse = 1.0 / discs.radius
+        self.use(lists)
 
+    def use(self, lists: TileLists) -> None:
+        """Make the rows of the pairs of some lists."""
+        self.lists, form, ball = lists, self.form, lists.ball
         # 1. Of each pair the ball's middle from the tile's, in radii.
-        ball, inverse = lists.ball, 1.0 / discs.radius
-        inverse = inverse.take(ball)
-        cx, cy = (
-            (place.take(ball) - np.repeat((at + 0.5) * SIDE, lists.count)) * inverse
-            for place, at in ((discs.x, lists.column), (discs.y, lists.row))
-        )
+        inverse = self.inverse.take(ball)
+        cx, cy = lists.from_middles(self.discs)
+        cx *= inverse
+        cy *= inverse
         # 2. A row for each pair, one more of zeros for the empty slots: the four
         #    numbers, the first again for p + shift, and what is looked up with them.
-        #    Column by column: each is one list of numbers, gathered or computed.
-        self.rows = np.empty((len(ball) + 1, 5 + beside.shape[1]), dtype)
+        self.rows = np.empty((len(ball) + 1, 5 + len(self.beside)), self.dtype)
         self.rows[-1] = 0.0
-        column = self.rows[:-1].T
+        of = self.rows[:-1].T
         scale = self.scale.take(ball)
         first = scale * (1.0 - cx * cx - cy * cy)
-        column[0], column[4] = first, first + form.shift * scale
+        of[0], of[4] = first, first + form.shift * scale
         scaled = inverse * scale
-        column[1] = 2.0 * cx * scaled
-        column[2] = 2.0 * cy * scaled
-        column[3] = -scaled * inverse
-        for number, values in enumerate(beside.T, 5):
-            column[number] = values.astype(dtype).take(ball)
+        of[1] = 2.0 * cx * scaled
+        of[2] = 2.0 * cy * scaled
+        of[3] = -scaled * inverse
+        # 3. What is looked up: of a list's first ball all, of others the change.
+        self.looked_up = [values.take(ball) for values in self.beside]
+        for kind, values in enumerate(self.looked_up, 5):
+            of[kind, 1:] = values[1:] - values[:-1]
+            of[kind, lists.first] = values[lists.first]
 
     def taken(
         self,
@@ -160,7 +166,6 @@ class Quadratics:
         v: Floats,
         out: Floats,
         zero: Floats,
-        moved: Moved = None,
     ) -> Floats:
         """Give -strength w of some pairs at all places.
 
@@ -178,27 +183,16 @@ class Quadratics:
             The result, of that shape.
         zero
             Zeros of that shape: numpy compares two arrays faster than with a number.
-        moved
-            How far the places are moved in each tile, x and y of shape (tiles,).
 
         Returns
         -------
-        What is looked up with the balls, shape (slots, tiles, C).
+        What is looked up with the pairs, shape (slots, tiles, C); 0 for none.
         """
         rows = self.rows.take(pair, axis=0, mode="wrap")
-        if moved is not None:
-            # The same quadratic in x + dx and y + dy has other coefficients.
-            dx, dy = (by.astype(self.dtype) for by in moved)
-            bx, by, c = rows[..., 1], rows[..., 2], rows[..., 3]
-            constant = bx * dx + by * dy + c * (dx * dx + dy * dy)
-            rows[..., 0] += constant
-            rows[..., 4] += constant
-            bx += 2.0 * dx * c
-            by += 2.0 * dy * c
         np.matmul(rows[..., :4], places.ahead, out=v)
         np.matmul(rows[..., 1:5], places.against, out=out)
         if self.direct is not None:
-            self._directly(pair, tile, places, v, out, moved)
+            self._directly(pair, tile, places, v, out)
         np.maximum(v, zero, out=v)
         self.form.times_power(v, out)
         return rows[..., 5:]
@@ -210,7 +204,6 @@ class Quadratics:
         places: Places,
         v: Floats,
         out: Floats,
-        moved: Moved,
     ) -> None:
         """Write the rows of chosen balls from each place's own distance."""
         assert self.direct is not None
@@ -219,14 +212,13 @@ class Quadratics:
         if not len(slots):
             return
         ball, tile = which[slots, tiles], tile[tiles]
-        aside = (0.0, 0.0) if moved is None else [by[tiles][:, None] for by in moved]
         # As `patch` has it, to the last bit: a rim at a depth of 1e30 shows every one.
         square = np.zeros((len(ball), len(places.x)))
         for center, middle, place in (
-            (self.discs.x, self.lists.column, places.x + aside[0]),
-            (self.discs.y, self.lists.row, places.y + aside[1]),
+            (self.discs.x, self.lists.column, places.x),
+            (self.discs.y, self.lists.row, places.y),
         ):
-            gap = place + ((middle[tile] + 0.5) * SIDE)[:, None]
+            gap = place + ((middle[tile] + 0.5) * self.lists.edge)[:, None]
             gap -= center[ball][:, None]
             gap /= self.discs.radius[ball][:, None]
             square += np.square(gap, out=gap)

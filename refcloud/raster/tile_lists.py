@@ -55,6 +55,8 @@ class TileLists:
         Numbers of balls, shape (P,): tile after tile, near to far within one.
     box
         First and one past the last column, and row, of the tiles that were looked at.
+    edge
+        Pixels along a tile's edge.
     """
 
     row: Whole
@@ -63,6 +65,14 @@ class TileLists:
     count: Whole
     ball: Whole
     box: tuple[int, int, int, int]
+    edge: int = SIDE
+
+    def from_middles(self, discs: Discs) -> tuple[Array, Array]:
+        """Give x and y of each pair's ball from its tile's middle, pixels, (P,)."""
+        x, y = discs.x.take(self.ball), discs.y.take(self.ball)
+        x -= np.repeat((self.column + 0.5) * self.edge, self.count)
+        y -= np.repeat((self.row + 0.5) * self.edge, self.count)
+        return x, y
 
     def chosen(self, which: Whole) -> TileLists:
         """Give the lists of some of the tiles."""
@@ -77,7 +87,39 @@ class TileLists:
             count,
             self.ball[pair],
             self.box,
+            self.edge,
         )
+
+    def quarters(self, tile: Whole, part: Whole, discs: Discs) -> TileLists:
+        """List the balls of quarters of tiles: each is a tile of half the edge.
+
+        Parameters
+        ----------
+        tile, part
+            Numbers of the tiles, and of their quarters, row after row, shape (Q,).
+        discs
+            The balls.
+
+        Returns
+        -------
+        The lists of the quarters, in that order.
+        """
+        # 1. Those of the whole tiles, from the quarters' middles.
+        mine, edge = self.chosen(tile), self.edge // 2
+        row, column = 2 * mine.row + part // 2, 2 * mine.column + part % 2
+        box = (2 * self.box[0], 2 * self.box[1], 2 * self.box[2], 2 * self.box[3])
+        whole = TileLists(row, column, mine.first, mine.count, mine.ball, box, edge)
+        # 2. Of these, the balls that reach a pixel's centre; of each list one at least.
+        outside = np.zeros(len(whole.ball))
+        for place in whole.from_middles(discs):
+            gap = np.maximum(np.abs(place, out=place) - 0.5 * (edge - 1), 0.0)
+            outside += np.square(gap, out=gap)
+        radius = discs.radius.take(whole.ball)
+        kept = outside <= (1.0 + ROOM) * radius * radius
+        kept[whole.first] = True
+        count = np.add.reduceat(kept, whole.first, dtype=np.intp)
+        first = np.cumsum(count) - count
+        return TileLists(row, column, first, count, whole.ball[kept], box, edge)
 
 
 @dataclass(frozen=True)
@@ -228,4 +270,5 @@ def tile_lists(
         count,
         ball[order],
         box,
+        edge,
     )

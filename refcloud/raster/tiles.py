@@ -8,9 +8,9 @@ the front, with F_k the light that passes all balls nearer than ball k,
 so that a tile needs no order of blending, only running sums of log T over its list.
 `composite` works on many tiles and a few balls of each at a time, in arrays that stay
 in the processor's cache. Two products of small matrices do most of the work: footprints
-(`quadratics`), and, summing by parts, colours:
+(`quadratics`), and, summing by parts, colours, with s_{-1} = 0:
 
-    c = s_0 + sum_k (s_k - s_{k-1}) F_k - s_end F_end
+    c = sum_k (s_k - s_{k-1}) F_k - s_end F_end
 
 Every product is smaller than 2^18, from where OpenBLAS may use more threads: the same
 bits whatever their number.
@@ -18,6 +18,7 @@ bits whatever their number.
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
 from dataclasses import dataclass
@@ -28,7 +29,7 @@ from numpy.typing import NDArray
 
 from refcloud.conventions import Array
 from refcloud.raster.footprint import Law, Name
-from refcloud.raster.quadratics import FORMS, Floats, Moved, Places, Quadratics
+from refcloud.raster.quadratics import FORMS, Floats, Places, Quadratics
 from refcloud.raster.tile_lists import SIDE, Discs, TileLists, Whole
 
 CACHED = 1 << 20  # bytes composited at a time: about what the processor's cache holds
@@ -111,19 +112,25 @@ class Compositor:
         deep = np.minimum(tau, DEEPEST[dtype])
         strength = deep * PER_E if self.beer else -np.expm1(-tau)
         self.footprints = Quadratics(
-            lists, discs, strength, FORMS[name], colours, direct, dtype
+            lists, discs, strength, FORMS[name], list(colours.T), direct, dtype
         )
         # Room to work in, the same one for all tiles; what is not used costs nothing.
         self.samples = CACHED // np.dtype(dtype).itemsize
         self.space = np.empty((2, 2 * self.samples), dtype)
         self.zeros = zeros(dtype)
 
+    def on(self, lists: TileLists) -> Compositor:
+        """Give a compositor of the same balls for other lists; it shares the room."""
+        other = copy.copy(self)
+        other.lists, other.footprints = lists, copy.copy(self.footprints)
+        other.footprints.use(lists)
+        return other
+
     def at(
         self,
         places: tuple[Array, Array],
         least: float,
         which: Whole | None = None,
-        moved: Moved = None,
     ) -> Result:
         """Composite tiles from the front.
 
@@ -136,8 +143,6 @@ class Compositor:
             A tile through which no place lets more than this share pass is complete.
         which
             Numbers of the tiles; None for all.
-        moved
-            How far the places are moved in each of these tiles, x and y of shape (T,).
 
         Returns
         -------
@@ -163,17 +168,16 @@ class Compositor:
                 few = max(MOST_SLOTS, min(WORTH // (n * size), 4 * MOST_SLOTS))
                 slots = min(self.samples // (n * size), few, int(left.max()))
                 k = np.arange(slots)[:, None]
-                pair = np.where(k < left, self.lists.first[tiles[live]] + slot + k, -1)
+                pair = self.lists.first[tiles[live]] + slot + k
+                if slots > left.min():
+                    pair = np.where(k < left, pair, -1)
 
                 # 2. What each takes of the light at each place: log2 T, or T - 1.
                 shape, every = (slots, n, size), slots * n * size
                 F = self.space[0, : every + n * size].reshape(slots + 1, n, size)
                 taken, v = F[1:], self.space[1, :every].reshape(shape)
                 zero = self.zeros[:every].reshape(shape)
-                aside = None if moved is None else (moved[0][live], moved[1][live])
-                shown = self.footprints.taken(
-                    pair, tiles[live], at, v, taken, zero, aside
-                )
+                change = self.footprints.taken(pair, tiles[live], at, v, taken, zero)
 
                 # 3. F, counted from this slot on: what passes the balls before.
                 F[0] = 1.0
@@ -187,12 +191,9 @@ class Compositor:
                     for j in range(1, slots):
                         taken[j] *= taken[j - 1]
 
-                # 4. Colours, by parts; an empty slot is black.
-                shown = shown.transpose(1, 2, 0)
-                change = np.empty((n, self.channels, slots + 1), self.dtype)
-                change[..., 0], change[..., -1] = shown[..., 0], -shown[..., -1]
-                np.subtract(shown[..., 1:], shown[..., :-1], out=change[..., 1:-1])
-                more = np.matmul(change, F.transpose(1, 0, 2))
+                # 4. Colours, by parts; in an empty slot nothing changes.
+                change = np.ascontiguousarray(change.transpose(1, 2, 0))
+                more = np.matmul(change, F[:-1].transpose(1, 0, 2))
                 if slot == 0:
                     added = more
                 else:
@@ -207,7 +208,7 @@ class Compositor:
                 # 5. Lists at their end, and tiles that nothing passes, are complete.
                 slot += slots
                 left -= slots
-                done = (left <= 0) | (through.max(axis=1) <= least)
+                done = (left <= 0) | ~(through > least).any(axis=1)
                 if done.all():
                     unseen[live] = np.maximum(left, 0)
                     light[live], clear[live] = added, through
@@ -219,6 +220,11 @@ class Compositor:
                     kept = ~done
                     live, added, through = live[kept], added[kept], through[kept]
                     total = total[kept]
+        # 6. Where a list ends or is cut off, the last ball's colour ends too.
+        last = self.lists.first[tiles] + counts - unseen - 1
+        for channel, shows in enumerate(self.footprints.looked_up):
+            ends = shows.take(last).astype(self.dtype)
+            light[:, channel] -= ends[:, None] * clear
         return Result(light, clear, unseen)
 
 

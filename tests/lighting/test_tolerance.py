@@ -172,11 +172,11 @@ def test_each_saving_is_counted_with_its_bound() -> None:
     double = rows["tiles in double precision"]
     assert 0 < double.skipped == double.of
     nodes = rows["pixels between nodes of smooth tiles"]
-    second = rows["pixels between every second one"]
-    for row in nodes, second:
+    samples = rows["pixels between samples of smooth tiles"]
+    for row in nodes, samples:
         assert 0 < row.skipped < row.of == double.of * 256
-    assert nodes.skipped + second.skipped < nodes.of
-    assert double.bound + nodes.bound + second.bound < 0.02
+    assert nodes.skipped + samples.skipped < nodes.of
+    assert double.bound + nodes.bound + samples.bound < 0.02
 
 
 def test_pixels_closed_one_by_one_are_told() -> None:

@@ -116,11 +116,12 @@ def wide_smooth_balls() -> LitMetaballs:
 
 
 TILES = "refcloud.lighting.certified_tiles"
+SPARSE = "refcloud.lighting.sparse_tiles"
 
 
 def off(*names: str) -> contextlib.ExitStack:
     """Switch ways to draw tiles off, by their least numbers."""
-    places = {"LEAST_RISE": "refcloud.raster.between"}
+    places = {"LEAST_RISE": "refcloud.raster.between", "LEAST_NODES": SPARSE}
     stack = contextlib.ExitStack()
     for name in names:
         stack.enter_context(replaced(places.get(name, TILES), **{name: np.inf}))
@@ -146,8 +147,8 @@ def pixels_between_nodes() -> Found:
     return with_and_without("LEAST_NODES", "LEAST_RISE")
 
 
-@proof("eye", "pixels between every second one")
-def pixels_between_every_second_one() -> Found:
+@proof("eye", "pixels between samples of smooth tiles")
+def pixels_between_samples() -> Found:
     return with_and_without("LEAST_RISE", "LEAST_NODES")
 
 
