@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid
 from refcloud.conventions import Array, Positive, Range, Seed, Shape
+from refcloud.frozen import sealed
 from refcloud.noise import octave_sum_grid
 
 Numbers = TypeVar("Numbers", bound=NDArray[np.floating[Any]])
@@ -76,7 +77,7 @@ def detail_grid(
         for row in skipped
     )
     return VoxelGrid(
-        np.minimum(noise / NEARLY_ALL, 1.0),
+        sealed(np.minimum(noise / NEARLY_ALL, 1.0)),
         table.lower,
         table.upper,
         rows,

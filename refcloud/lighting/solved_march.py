@@ -13,6 +13,7 @@ from refcloud.checking import checked
 from refcloud.cloudmap import VoxelGrid, cell_size
 from refcloud.cloudmap.sample import clamped_trilinear
 from refcloud.conventions import Array, Observer, Seed, Skipped, Tolerance
+from refcloud.frozen import sealed
 from refcloud.lighting.octave_march import (
     CHUNK,
     FRONT_SHARE,
@@ -138,12 +139,12 @@ def block_means(grid: VoxelGrid, *, most: int) -> VoxelGrid:
     D, H, W = (size // n for size in padded.shape)
     density = padded.reshape(D, n, H, n, W, n).mean(axis=(1, 3, 5))
     upper = grid.lower + n * np.array([W, H, D]) * cell_size(grid)
-    return VoxelGrid(density, grid.lower, upper)
+    return VoxelGrid(sealed(density), grid.lower, upper)
 
 
 def _toward_eye(light: ScatteredLight, camera: Camera | OrthographicCamera) -> Array:
     """Give the solved source of each voxel toward the eye, (D, H, W, 3)."""
-    box = VoxelGrid(np.zeros(light.shape), light.lower, light.upper)
+    box = VoxelGrid(sealed(np.zeros(light.shape)), light.lower, light.upper)
     where = tuple(index.ravel() for index in np.indices(light.shape))
     toward = -seen_along(box, camera, where)
     found = np.zeros((len(toward), 3))

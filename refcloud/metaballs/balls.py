@@ -12,6 +12,7 @@ from refcloud.cloudmap.voxels import VoxelGrid, cell_size
 from refcloud.conventions import Array, Positive, Range, Shape, Skipped
 from refcloud.metaballs.integrals import integral
 from refcloud.metaballs.kernels import Kernel
+from refcloud.refusal import counted
 
 # A voxel's ball reaches over its neighbours' centres, so that no gaps show between.
 VOXEL_REACH = 1.5  # radius in mean cell edges
@@ -53,7 +54,7 @@ class Metaballs:
             return f"Metaballs(0 balls, {self.kernel})"
         least, most = float(self.radii.min()), float(self.radii.max())
         return (
-            f"Metaballs({len(self)} balls, radii {least:.4g} to {most:.4g},"
+            f"Metaballs({counted(len(self), 'ball')}, radii {least:.4g} to {most:.4g},"
             f" {self.kernel})"
         )
 
