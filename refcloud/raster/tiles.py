@@ -185,7 +185,7 @@ class Compositor:
                     for j in range(1, slots):
                         taken[j] += taken[j - 1]
                     total += taken[-1]
-                    np.exp2(taken, out=taken)
+                    np.exp2(taken[:-1], out=taken[:-1])
                 else:
                     taken += taken.dtype.type(1.0)
                     for j in range(1, slots):
@@ -214,10 +214,10 @@ class Compositor:
                     light[live], clear[live] = added, through
                     break
                 if 4 * np.count_nonzero(done) >= n:
-                    unseen[live[done]] = np.maximum(left[done], 0)
-                    light[live[done]] = added[done]
-                    clear[live[done]] = through[done]
-                    kept = ~done
+                    over, kept = np.flatnonzero(done), np.flatnonzero(~done)
+                    ended = live.take(over)
+                    unseen[ended] = np.maximum(left.take(over), 0)
+                    light[ended], clear[ended] = added[over], through[over]
                     live, added, through = live[kept], added[kept], through[kept]
                     total = total[kept]
         # 6. Where a list ends or is cut off, the last ball's colour ends too.
