@@ -183,7 +183,7 @@ def project(
     [5.0, 4.0, 4.0, 1.0]
     """
     # Without a matrix product: the same bits wherever a point stands in the list.
-    ahead = (points - camera.eye).T
+    ahead = np.ascontiguousarray((points - camera.eye).T)  # by axis
     right, up, back = (
         axis[0] * ahead[0] + axis[1] * ahead[1] + axis[2] * ahead[2]
         for axis in axes(camera)

@@ -31,7 +31,7 @@ MOST_FLOAT32 = 1e-4  # of the tolerance's share: nothing is won by more
 OF_NODES = 1.0 / 8.0  # of what fewer places may change: tiles beside take some over
 # Tiles that are compared with the exact method, at 16 pixels each. Where pixels lie
 # between samples a tolerance is a hundred times what float32 rounds.
-SAMPLED, SAMPLED_BETWEEN = 32, 16
+SAMPLED, SAMPLED_BETWEEN = 32, 8
 # The largest error of a picture over the largest of its sample: of float32, whose
 # errors are sums of many roundings; and between places, where they sit at a few rims.
 MARGIN_FLOAT32, MARGIN_BETWEEN = 6.0, 1.2

@@ -80,7 +80,10 @@ def without_faint(
     Balls still to be drawn, and the rows of the report.
     """
     effect = -np.expm1(-tau) * brightest
-    candidates = order[(visible & (effect <= tolerance))[order]]
+    weak = visible & (effect <= tolerance)
+    if not weak.any():
+        return visible, []
+    candidates = order[weak[order]]
     ranked = candidates[np.argsort(effect[candidates], kind="stable")]
     total = np.cumsum(effect[ranked])
     faint = ranked[total <= tolerance]

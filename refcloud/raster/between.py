@@ -46,7 +46,7 @@ FAR = 0.125
 # along a tile's edge: with 8 of them no pixel lies halfway. Of errors over 0.001 the
 # worst seen are 0.116, 0.136, 0.106 and 0.090, in 250,000 to 510,000 quarters of
 # 60,000 to 140,000 scenes of all sorts; 0.024 is common.
-PER_FOURTH = {4: 0.14, 5: 0.16, 6: 0.125, 8: 0.105}
+PER_FOURTH = {4: 0.14, 5: 0.16, 6: 0.125, 8: 0.1}
 
 
 @dataclass(frozen=True, eq=False)

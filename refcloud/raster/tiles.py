@@ -158,17 +158,16 @@ class Compositor:
         ranked = np.argsort(-counts, kind="stable")  # lists of like length together
         for begin in range(0, len(tiles), together):
             live = ranked[begin : begin + together]
+            left, start = counts[live], self.lists.first[tiles[live]]
             added = np.empty(0, self.dtype)  # nothing yet
             through = np.ones((len(live), size), self.dtype)
             total = np.zeros((len(live), size))  # its log2, in float64: no drift
-            slot = 0
             while n := len(live):
                 # 1. The next balls of each tile; past a list's end, none.
-                left = counts[live] - slot
                 few = max(MOST_SLOTS, min(WORTH // (n * size), 4 * MOST_SLOTS))
                 slots = min(self.samples // (n * size), few, int(left.max()))
                 k = np.arange(slots)[:, None]
-                pair = self.lists.first[tiles[live]] + slot + k
+                pair = start + k
                 if slots > left.min():
                     pair = np.where(k < left, pair, -1)
 
@@ -185,7 +184,7 @@ class Compositor:
                     for j in range(1, slots):
                         taken[j] += taken[j - 1]
                     total += taken[-1]
-                    np.exp2(taken, out=taken)
+                    np.exp2(taken[:-1], out=taken[:-1])
                 else:
                     taken += taken.dtype.type(1.0)
                     for j in range(1, slots):
@@ -194,7 +193,7 @@ class Compositor:
                 # 4. Colours, by parts; in an empty slot nothing changes.
                 change = np.ascontiguousarray(change.transpose(1, 2, 0))
                 more = np.matmul(change, F[:-1].transpose(1, 0, 2))
-                if slot == 0:
+                if not len(added):
                     added = more
                 else:
                     more *= through[:, None]
@@ -206,7 +205,7 @@ class Compositor:
                     through *= taken[-1]
 
                 # 5. Lists at their end, and tiles that nothing passes, are complete.
-                slot += slots
+                start += slots
                 left -= slots
                 done = (left <= 0) | ~(through > least).any(axis=1)
                 if done.all():
@@ -214,12 +213,12 @@ class Compositor:
                     light[live], clear[live] = added, through
                     break
                 if 4 * np.count_nonzero(done) >= n:
-                    unseen[live[done]] = np.maximum(left[done], 0)
-                    light[live[done]] = added[done]
-                    clear[live[done]] = through[done]
-                    kept = ~done
+                    over, kept = np.flatnonzero(done), np.flatnonzero(~done)
+                    ended = live.take(over)
+                    unseen[ended] = np.maximum(left.take(over), 0)
+                    light[ended], clear[ended] = added[over], through[over]
                     live, added, through = live[kept], added[kept], through[kept]
-                    total = total[kept]
+                    total, left, start = total[kept], left[kept], start[kept]
         # 6. Where a list ends or is cut off, the last ball's colour ends too.
         last = self.lists.first[tiles] + counts - unseen - 1
         for channel, shows in enumerate(self.footprints.looked_up):
