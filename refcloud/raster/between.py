@@ -30,7 +30,7 @@ SIZES = (4, 5, 6, 8)  # samples along a tile's edge: more would hardly save any
 TAPS = 6  # samples that a pixel lies between, along one line
 FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 BEYOND = TAPS // 2  # samples beyond a tile's edges that its pixels need
-TOGETHER = 768  # channels of tiles at a time, which stay in the cache
+TOGETHER = 1536  # channels of tiles at a time, which stay in the cache
 # Of a sample's error, what pixels of the tile beside it take over at most: the weights
 # of all samples outside sum to 1.165 at a corner, where n is 4, and to less elsewhere.
 HANDED_ON = 1.17

@@ -89,9 +89,12 @@ class Places:
 
     def __init__(self, x: Array, y: Array, dtype: type) -> None:
         self.x, self.y = x, y
-        one, square = np.ones_like(x), x * x + y * y
-        self.ahead = np.stack([one, x, y, square]).astype(dtype)
-        self.against = -np.stack([x, y, square, one]).astype(dtype)
+        # 1, x, y and x^2 + y^2, and once more with the other sign and the 1 last.
+        self.ahead, self.against = np.empty((2, 4, len(x)), dtype)
+        self.ahead[0], self.ahead[1], self.ahead[2] = 1.0, x, y
+        self.ahead[3] = x * x + y * y
+        np.negative(self.ahead[1:], out=self.against[:3])
+        self.against[3] = -1.0
 
 
 class Quadratics:

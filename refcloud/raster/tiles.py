@@ -154,7 +154,7 @@ class Compositor:
         clear = np.empty((len(tiles), size), self.dtype)
         unseen = np.zeros(len(tiles), np.intp)
         together = max(min(self.samples // (LEAST_SLOTS * size), len(tiles)), 1)
-        at = Places(*places, self.dtype)
+        at, every_place = Places(*places, self.dtype), np.ones(size, dtype=bool)
         ranked = np.argsort(-counts, kind="stable")  # lists of like length together
         for begin in range(0, len(tiles), together):
             live = ranked[begin : begin + together]
@@ -207,7 +207,8 @@ class Compositor:
                 # 5. Lists at their end, and tiles that nothing passes, are complete.
                 start += slots
                 left -= slots
-                done = (left <= 0) | ~(through > least).any(axis=1)
+                # (A product of truths is what numpy has soonest.)
+                done = (left <= 0) | ~((through > least) @ every_place)
                 if done.all():
                     unseen[live] = np.maximum(left, 0)
                     light[live], clear[live] = added, through
