@@ -167,22 +167,23 @@ class SparseTiles:
             across = np.concatenate([each for _, _, each in rough], axis=1)
             sizes = Fourth(grid, down, across).of_quarters().transpose(2, 0, 1, 3)
             row, column, at = np.nonzero(self._too_large(sizes, most))
-            self._draw_quarters(some[at], 2 * row + column)
+            self._draw_quarters(some[at], row, column)
 
     def _too_large(self, largest: Floats, most: float) -> NDArray[np.bool_]:
         """Tell where fourth differences, of light and of what passes, are too large."""
         per_fourth = between.PER_FOURTH[self.samples.grid.n]
         return self.of_picture(*largest) * per_fourth > most
 
-    def _draw_quarters(self, tile: Whole, part: Whole) -> None:
+    def _draw_quarters(self, tile: Whole, row: Whole, column: Whole) -> None:
         """Draw all pixels of some quarters of tiles."""
-        light, clear = self.drawn.light, self.drawn.clear
-        pixels, places = between.quarters()
-        quarters = self.lists.quarters(tile, part, self.discs)
-        found = self.tiles.on(quarters).at(places, self.least)
-        at, tile = pixels[part][:, None], tile[:, None, None]
-        light[tile, np.arange(self.lights)[:, None], at] = found.light
-        clear[tile, np.arange(clear.shape[1])[:, None], at] = found.clear
+        quarters = self.lists.quarters(tile, row, column, self.discs)
+        found = self.tiles.on(quarters).at(between.quarter_places(), self.least)
+        for pixels, drawn in (
+            (self.drawn.light, found.light),
+            (self.drawn.clear, found.clear),
+        ):
+            parts = between.by_quarter(pixels)
+            parts[tile, row, column] = drawn.reshape(len(tile), *parts.shape[3:])
         self.saved_by_samples -= found.clear[:, 0].size
 
     def _keep(self, which: Whole, light: Floats, clear: Floats, unseen: Whole) -> None:

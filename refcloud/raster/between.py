@@ -139,22 +139,27 @@ def samples_for(step: float) -> Lattice:
 
 
 @functools.cache
-def quarters() -> tuple[Whole, tuple[Array, Array]]:
-    """Set up the quarters of a tile, row after row, to be drawn where it is not smooth.
+def quarter_places() -> tuple[Array, Array]:
+    """Give x and y of a quarter's pixels from its middle, row after row, (64,)."""
+    step = np.arange(0.5 - SIDE / 4, SIDE / 4)
+    return np.tile(step, SIDE // 2), np.repeat(step, SIDE // 2)
+
+
+def by_quarter(pixels: Floats) -> Floats:
+    """View pixels of tiles by the rows and columns of quarters.
+
+    Parameters
+    ----------
+    pixels
+        Shape (T, C, 256).
 
     Returns
     -------
-    Numbers of their pixels, shape (4, 64); and x and y of these from a quarter's
-    middle, the same in each, shape (64,).
+    Shape (T, 2, 2, C, 8, 8).
     """
     half = SIDE // 2
-    row, column = np.divmod(np.arange(half * half), half)
-    j, i = np.divmod(np.arange(4), 2)
-    middle = 0.5 * (half - 1)
-    return (
-        (half * j[:, None] + row) * SIDE + half * i[:, None] + column,
-        (column - middle, row - middle),
-    )
+    parted = pixels.reshape(*pixels.shape[:2], 2, half, 2, half)
+    return parted.transpose(0, 2, 4, 1, 3, 5)
 
 
 def inside(lists: TileLists) -> NDArray[np.bool_]:

@@ -90,13 +90,15 @@ class TileLists:
             self.edge,
         )
 
-    def quarters(self, tile: Whole, part: Whole, discs: Discs) -> TileLists:
+    def quarters(
+        self, tile: Whole, row: Whole, column: Whole, discs: Discs
+    ) -> TileLists:
         """List the balls of quarters of tiles: each is a tile of half the edge.
 
         Parameters
         ----------
-        tile, part
-            Numbers of the tiles, and of their quarters, row after row, shape (Q,).
+        tile, row, column
+            Numbers of the tiles, and which of their quarters, 0 or 1, shape (Q,).
         discs
             The balls.
 
@@ -106,7 +108,7 @@ class TileLists:
         """
         # 1. Those of the whole tiles, from the quarters' middles.
         mine, edge = self.chosen(tile), self.edge // 2
-        row, column = 2 * mine.row + part // 2, 2 * mine.column + part % 2
+        row, column = 2 * mine.row + row, 2 * mine.column + column
         box = (2 * self.box[0], 2 * self.box[1], 2 * self.box[2], 2 * self.box[3])
         whole = TileLists(row, column, mine.first, mine.count, mine.ball, box, edge)
         # 2. Of these, the balls that reach a pixel's centre; of each list one at least.

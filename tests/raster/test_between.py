@@ -18,13 +18,21 @@ from refcloud.raster.between import (
     SIZES,
     Fourth,
     Samples,
+    by_quarter,
     inside,
     lattice,
     least_step,
-    quarters,
+    quarter_places,
     samples_for,
 )
-from refcloud.raster.tile_lists import PIXELS, SIDE, Discs, parts
+from refcloud.raster.tile_lists import (
+    PIXELS,
+    SIDE,
+    Discs,
+    parts,
+    ranges_of,
+    tile_lists,
+)
 from refcloud.raster.tiles import composite, pixel_places
 
 SIZE = 80, 64  # 5 x 4 tiles, 3 x 2 of them inside
@@ -79,13 +87,39 @@ def test_samples_are_equally_spaced_from_tile_to_tile(n: int) -> None:
 
 
 def test_quarters_are_all_pixels_once() -> None:
-    pixels, at = quarters()
-    assert sorted(pixels.ravel().tolist()) == list(range(PIXELS))
     for axis in range(2):
-        part = np.arange(4) // 2 if axis else np.arange(4) % 2
-        middle = SIDE // 2 * (part - 0.5)
-        moved = middle[:, None] + at[axis]
-        np.testing.assert_array_equal(moved, pixel_places()[axis][pixels])
+        pixels = by_quarter(pixel_places()[axis][None, None])[0, :, :, 0]
+        for row, column in np.ndindex(2, 2):
+            middle = SIDE // 2 * ((row if axis else column) - 0.5)
+            found = quarter_places()[axis].reshape(SIDE // 2, SIDE // 2)
+            np.testing.assert_array_equal(pixels[row, column] - middle, found)
+
+
+def test_lists_of_quarters_hold_every_ball_that_reaches_them() -> None:
+    k = np.arange(60)
+    x, y = (uniform(k, axis, seed=4) * side for axis, side in enumerate(SIZE))
+    discs = Discs(x, y, 2.0 + 12.0 * uniform(k, 2, seed=4))
+    (lists,) = parts(discs, *SIZE)
+    tile, row, column = (
+        index.ravel() for index in np.indices((len(lists.count), 2, 2))
+    )
+    found = lists.quarters(tile, row, column, discs)
+    half, box = SIDE // 2, (0, 10, 0, 8)
+    ranges = ranges_of(discs, *SIZE, edge=half)
+    small = tile_lists(discs, ranges, ranges.tiles(), box, edge=half)
+    expected = {
+        (r, c): small.ball[first : first + count].tolist()
+        for r, c, first, count in zip(
+            small.row, small.column, small.first, small.count, strict=True
+        )
+    }
+    for q, (r, c) in enumerate(zip(found.row, found.column, strict=True)):
+        mine = found.ball[found.first[q] : found.first[q] + found.count[q]].tolist()
+        # The first ball of the tile stays, so that no list is empty.
+        want = expected.get((r, c), [])
+        assert want in (mine, mine[1:])
+    assert found.edge == SIDE // 2
+    assert found.box == tuple(2 * side for side in lists.box)
 
 
 def test_a_lattice_has_steps_up_to_the_one_asked_for() -> None:
