@@ -35,13 +35,17 @@ SIDE, SIDE_OF_MANY = 184, 208
 # Light that is off by less than this share of the sun's: the buffer's own error is
 # larger, whether hard discs at 512 or antialiased ones.
 LIGHT = 3e-3
+LOOKS = {
+    "flat": splat_scene.FLAT,
+    "coloured": splat_scene.COLOURED,
+    "cumulus": Look(),
+}
 
 
 @functools.cache
 def lit(count: int, name: str) -> LitMetaballs:
     """Light the scene by one sun, once, for a look by name."""
-    look = splat_scene.FLAT if name == "flat" else Look()
-    return splat_scene.lit(count, look)
+    return splat_scene.lit(count, LOOKS[name])
 
 
 def second_pass(count: int, name: str = "flat") -> list[Contender]:
@@ -52,14 +56,15 @@ def second_pass(count: int, name: str = "flat") -> list[Contender]:
     count
         How many balls.
     name
-        "flat", balls of one colour each, or "cumulus".
+        "flat", balls of one colour each under one white light; "coloured", such balls
+        under sun, sky and ground; or "cumulus".
 
     Returns
     -------
     The contenders; the literal loop is the rival.
     """
     balls, camera = lit(count, name), splat_scene.eye()
-    task = f"second pass N={count}" + (" cumulus" if name == "cumulus" else "")
+    task = f"second pass N={count}" + ("" if name == "flat" else f" {name}")
     literal = functools.partial(eyeward_literal, balls, camera)
     reference = functools.cache(literal)
 
@@ -83,6 +88,11 @@ def second_pass(count: int, name: str = "flat") -> list[Contender]:
 def cumulus_look(count: int) -> list[Contender]:
     """List the ways to draw balls with eroded edges and light as a field."""
     return second_pass(count, "cumulus")
+
+
+def coloured_light(count: int) -> list[Contender]:
+    """List the ways to draw flat balls whose channels differ by more than a factor."""
+    return second_pass(count, "coloured")
 
 
 def first_pass(count: int) -> list[Contender]:
@@ -147,6 +157,7 @@ SPLAT = Subject(
     ),
     lists=(
         *((second_pass, count, quick) for count, quick in COUNTS.items()),
+        *((coloured_light, count, COUNTS[count]) for count in (1200, 10_000)),
         (cumulus_look, 1200, COUNTS[1200]),
         *((first_pass, count, COUNTS[count]) for count in (1200, 10_000)),
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 
@@ -40,6 +41,14 @@ FLAT = Look(
     erosion_depth=1.0,
     relief=0.0,
     buffer=256,
+)
+
+
+# Light from sky and ground as well: no two channels of a colour are multiples.
+COLOURED = dataclasses.replace(
+    FLAT,
+    sky_light=np.array([0.3, 0.5, 0.9]),
+    ground_light=np.array([0.2, 0.15, 0.1]),
 )
 
 
