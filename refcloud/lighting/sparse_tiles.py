@@ -7,13 +7,15 @@ all pixels elsewhere. Last terms and fourth differences tell where places are to
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
 from refcloud.lighting.flat_tiles import Drawn, Flat, FlatTiles
 from refcloud.raster import between
 from refcloud.raster.between import Fourth, Lattice, Samples
-from refcloud.raster.nodes import LEAST_RISE, nodes
+from refcloud.raster.nodes import LEAST_RISE, nodes, one_sided
 from refcloud.raster.quadratics import Floats
 from refcloud.raster.tile_lists import PIXELS, TileLists, Whole
 from refcloud.raster.tiles import pixel_places
@@ -73,7 +75,7 @@ class SparseTiles:
         tried = np.flatnonzero(wide & (self.lists.count > FEW))
         if not len(tried):
             return 0.0
-        found = self.tiles.at(level.places, self.least / level.one_sided, tried)
+        found = self.tiles.at(level.places, self.least / _one_sided(), tried)
         error = self.of_picture(
             level.error_of(found.light), level.error_of(found.clear)
         )
@@ -200,3 +202,11 @@ class SparseTiles:
         if self.behind > 0.0:
             return light + self.behind * clear
         return np.maximum(light, clear)
+
+
+@functools.cache
+def _one_sided() -> float:
+    """Give the most that errors from 0 to 1 at nodes make at pixels or at samples."""
+    level = nodes(NODES)
+    grids = (level.spread_to(between.lattice(n).along) for n in between.SIZES)
+    return max(level.one_sided, *(one_sided(spread) for spread in grids))

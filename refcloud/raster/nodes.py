@@ -58,9 +58,7 @@ class Nodes:
     @property
     def one_sided(self) -> float:
         """Give the most that errors from 0 to 1 at all nodes make at a pixel."""
-        more = np.maximum(self.spread, 0.0).sum(axis=0).max()
-        less = np.minimum(self.spread, 0.0).sum(axis=0).min()
-        return float(max(more, -less))
+        return one_sided(self.spread)
 
     def error_of(self, values: Floats) -> Floats:
         """Estimate how far pixels made of these nodes are off.
@@ -95,6 +93,19 @@ class Nodes:
         One small product for each tile: the same bits whatever the number of threads.
         """
         return np.matmul(values, self.spread.astype(values.dtype))
+
+
+def one_sided(spread: Floats) -> float:
+    """Give the most that errors from 0 to 1 at all nodes make at a place.
+
+    Parameters
+    ----------
+    spread
+        Values at nodes to values at places, shape (n^2, S).
+    """
+    more = np.maximum(spread, 0.0).sum(axis=0).max()
+    less = np.minimum(spread, 0.0).sum(axis=0).min()
+    return float(max(more, -less))
 
 
 @functools.cache

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from refcloud.lighting.sparse_tiles import NODES, _one_sided
 from refcloud.noise import uniform
+from refcloud.raster.between import SIZES, lattice
 from refcloud.raster.nodes import LAST, LEAST_RISE, nodes
 from refcloud.raster.tile_lists import SIDE, Discs, parts
 from refcloud.raster.tiles import composite, pixel_places
@@ -45,6 +47,28 @@ def test_what_errors_of_one_sign_make_at_pixels(n: int) -> None:
         made = np.abs(np.diagonal(level.at_pixels(errors)[:, 0])).max()
         assert made <= level.one_sided * (1.0 + 1e-12)
         assert sign < 0.0 or made > 0.999 * level.one_sided > 1.0
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("n", COUNTS)
+def test_polynomials_below_n_are_exact_at_samples(n: int, size: int) -> None:
+    level, grid = nodes(n), lattice(size)
+    spread = level.spread_to(grid.along)
+    for degree_x, degree_y in ((0, 0), (1, 2), (n - 1, n - 1)):
+        at_nodes, at_samples = (
+            (x / 8.0) ** degree_x * (y / 8.0) ** degree_y
+            for x, y in (level.places, grid.places)
+        )
+        np.testing.assert_allclose(at_nodes @ spread, at_samples, rtol=0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_front_cut_at_nodes_is_cut_for_samples_too(size: int) -> None:
+    spread = nodes(NODES).spread_to(lattice(size).along)
+    for sign in (1.0, -1.0):
+        made = np.abs(np.einsum("ns,ns->s", spread, sign * spread > 0.0)).max()
+        assert made <= _one_sided()
+    assert _one_sided() >= nodes(NODES).one_sided
 
 
 @settings(max_examples=20)
